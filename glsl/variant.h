@@ -1,0 +1,40 @@
+// A technique with its options chosen: what a person names on the command line and reads in the report.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "glsl/technique.h"
+
+namespace arealab {
+
+struct Variant {
+  const Technique* technique = nullptr;        // into the registry, which outlives it
+  std::map<std::string, std::string> options;  // every option of the technique → choice
+
+  // Canonical: "ltc", "ltc+clip=switch+edge=rational"; keys in header order, defaults left out.
+  std::string Name() const;
+  // "ltc@published" where these are its author's choices and differ from the defaults, else Name().
+  std::string ShortName() const;
+  bool operator==(const Variant& other) const;
+};
+
+Variant DefaultVariant(const Technique& technique);
+Variant PublishedVariant(const Technique& technique);
+
+// Reads "ltc", "ltc@published", "ltc+clip=switch", "ltc@published+edge=acos". Throws InputError that lists what exists.
+Variant ParseVariant(const std::vector<Technique>& techniques, std::string_view name);
+
+// Each technique's default and, where it differs, its published form: what `compare` shows.
+std::vector<Variant> DefaultVariants(const std::vector<Technique>& techniques);
+
+// Every combination of options of every technique, for the tests.
+std::vector<Variant> AllVariants(const std::vector<Technique>& techniques);
+
+// A sentence that says why the variant cannot shade the scene, or nothing.
+std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene);
+
+}  // namespace arealab

@@ -1,0 +1,95 @@
+// What a scene is, after reading: plain structs, every length in metres, every angle in radians, colours in linear sRGB.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace arealab {
+
+enum class Units { kRadiometric, kPhotometric };  // of radiance: W/(m² sr), or cd/m² (nits)
+
+enum class LightShape { kRectangle, kDisk, kSphere };
+
+// "rectangle", "disk", "sphere": as written in scene files, technique headers and results.
+const char* Name(LightShape shape);
+
+// An emitter of constant radiance. axis_x, axis_y, normal are unit and right-handed: normal = axis_x × axis_y, and the
+// lit side is the one that normal points to (a sphere emits everywhere and ignores the axes).
+struct Light {
+  std::string name;
+  LightShape shape = LightShape::kRectangle;
+  glm::dvec3 center{0.0};  // m, world
+  glm::dvec3 axis_x{1.0, 0.0, 0.0};
+  glm::dvec3 axis_y{0.0, 1.0, 0.0};
+  glm::dvec3 normal{0.0, 0.0, 1.0};
+  glm::dvec2 half_size{0.5};  // m: half width and half height along the axes; disk and sphere: the radius, twice
+  glm::dvec3 radiance{1.0};   // in the scene's unit, linear sRGB primaries
+  bool two_sided = false;
+
+  double Area() const;  // m², of the lit side or sides together; sphere: 4πR²
+  double Flux() const;  // luminance of radiance × π × Area(): W or lm
+};
+
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<glm::vec4> pixels;  // row 0 is the top; colours already linear, data (normals, roughness) as stored
+};
+
+struct Material {
+  std::string name;
+  glm::vec3 base_color{0.8f};
+  glm::vec2 roughness{0.5f};  // artist's roughness in [0, 1] at texture coordinate u = 0 and u = 1, linear between
+  float metalness = 0.0f;
+  float normal_scale = 1.0f;
+  std::shared_ptr<const Image> base_color_texture;          // multiplies base_color
+  std::shared_ptr<const Image> metallic_roughness_texture;  // glTF: green × roughness, blue × metalness
+  std::shared_ptr<const Image> normal_texture;              // glTF tangent space, y up
+};
+
+struct Vertex {
+  glm::vec3 position;  // m, world
+  glm::vec3 normal;    // unit, world
+  glm::vec4 tangent;   // xyz unit, w = ±1 the bitangent's sign (glTF)
+  glm::vec2 uv;
+};
+
+struct Mesh {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  // triangles, counter-clockwise seen from outside
+  int material = 0;                    // index into Scene::materials
+};
+
+struct Camera {
+  glm::dvec3 position{0.0, -4.0, 1.5};
+  glm::dvec3 target{0.0};
+  glm::dvec3 up{0.0, 0.0, 1.0};
+  double vertical_fov = 0.7;  // radians
+};
+
+struct Scene {
+  std::string name;            // the file's stem
+  std::string question;        // the file's first line, without the comment mark: what this scene asks
+  std::filesystem::path file;
+  Units units = Units::kRadiometric;
+  double exposure = 0.0;  // EV: pictures show radiance × 2^exposure
+  Camera camera;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Light> lights;
+};
+
+// Reads and checks a scene file. Throws InputError ("file:line: what; expected what").
+Scene LoadScene(const std::filesystem::path& file);
+
+// The scene files that come with AreaLab, in the order of the report.
+std::vector<std::filesystem::path> BuiltInScenes();
+
+// A built-in scene's name ("gloss") or a path, to a path. Throws InputError naming the built-in scenes.
+std::filesystem::path FindScene(const std::string& name_or_path);
+
+}  // namespace arealab
