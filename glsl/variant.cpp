@@ -1,0 +1,198 @@
+#include "glsl/variant.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "glsl/nearest.h"
+#include "scenes/error.h"
+
+namespace arealab {
+
+namespace {
+
+constexpr std::string_view kPublished = "published";
+
+std::vector<std::string> Names(const auto& items) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(item.name);
+  return names;
+}
+
+template <typename Item>
+const Item* FindByName(const std::vector<Item>& items, std::string_view name) {
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
+  return found == items.end() ? nullptr : &*found;
+}
+
+// `text` up to the first of `stops`, which stays at the head of what is left.
+std::string_view TakeUntil(std::string_view& text, std::string_view stops) {
+  const std::string_view head = text.substr(0, text.find_first_of(stops));
+  text.remove_prefix(head.size());
+  return head;
+}
+
+// Applies one "clip=switch".
+void ParseAssignment(std::string_view assignment, std::string_view whole, Variant& variant,
+                     std::map<std::string, std::string>& given) {
+  const Technique& technique = *variant.technique;
+  const auto equals = assignment.find('=');
+  if (equals == std::string_view::npos) {
+    throw InputError(
+        fmt::format("variant \"{}\": \"+{}\" chooses nothing; expected +OPTION=CHOICE", whole, assignment));
+  }
+  const std::string name(assignment.substr(0, equals));
+  const std::string choice(assignment.substr(equals + 1));
+  const Option* option = FindByName(technique.options, name);
+  if (!option && technique.options.empty()) {
+    throw InputError(fmt::format("variant \"{}\": unknown option \"{}\"; expected none, {} has no options",
+                                 whole, name, technique.name));
+  }
+  if (!option) {
+    throw InputError(fmt::format("variant \"{}\": unknown option \"{}\"; expected {}", whole, name,
+                                 ExpectedNames(name, Names(technique.options))));
+  }
+  if (!FindByName(option->choices, choice)) {
+    throw InputError(fmt::format("variant \"{}\": unknown choice \"{}\" of option {}; expected {}", whole,
+                                 choice, name, ExpectedNames(choice, Names(option->choices))));
+  }
+  if (!given.emplace(name, choice).second) {
+    throw InputError(fmt::format("variant \"{}\": option {} is given twice; expected once", whole, name));
+  }
+  variant.options[name] = choice;
+}
+
+const char* PluralName(LightShape shape) {
+  switch (shape) {
+    case LightShape::kRectangle:
+      return "rectangles";
+    case LightShape::kDisk:
+      return "disks";
+    case LightShape::kSphere:
+      return "spheres";
+  }
+  return "";
+}
+
+// "rectangles", "rectangles and disks", "rectangles, disks and spheres".
+std::string ShapeList(const std::vector<LightShape>& shapes) {
+  std::string list;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    list += i == 0 ? "" : i + 1 == shapes.size() ? " and " : ", ";
+    list += PluralName(shapes[i]);
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string Variant::Name() const {
+  std::string name = technique->name;
+  for (const Option& option : technique->options) {
+    const std::string& choice = options.at(option.name);
+    if (choice != option.choices.front().name) name += fmt::format("+{}={}", option.name, choice);
+  }
+  return name;
+}
+
+std::string Variant::ShortName() const {
+  if (*this == PublishedVariant(*technique) && *this != DefaultVariant(*technique)) {
+    return fmt::format("{}@{}", technique->name, kPublished);
+  }
+  return Name();
+}
+
+bool Variant::operator==(const Variant& other) const {
+  return technique->name == other.technique->name && options == other.options;
+}
+
+Variant DefaultVariant(const Technique& technique) {
+  Variant variant{&technique, {}};
+  for (const Option& option : technique.options) variant.options[option.name] = option.choices.front().name;
+  return variant;
+}
+
+Variant PublishedVariant(const Technique& technique) {
+  Variant variant = DefaultVariant(technique);
+  for (const auto& [option, choice] : technique.published) variant.options[option] = choice;
+  return variant;
+}
+
+Variant ParseVariant(const std::vector<Technique>& techniques, std::string_view name) {
+  std::string_view rest = name;
+  const std::string technique_name(TakeUntil(rest, "@+"));
+  const Technique* technique = FindByName(techniques, technique_name);
+  if (!technique) {
+    throw InputError(fmt::format("variant \"{}\": unknown technique \"{}\"; expected {}", name,
+                                 technique_name, ExpectedNames(technique_name, Names(techniques))));
+  }
+  Variant variant = DefaultVariant(*technique);
+  if (rest.starts_with('@')) {
+    rest.remove_prefix(1);
+    const std::string_view form = TakeUntil(rest, "@+");
+    if (form != kPublished) {
+      throw InputError(
+          fmt::format("variant \"{}\": unknown form \"@{}\"; expected @{}", name, form, kPublished));
+    }
+    variant = PublishedVariant(*technique);
+  }
+  std::map<std::string, std::string> given;
+  while (rest.starts_with('+')) {
+    rest.remove_prefix(1);
+    ParseAssignment(TakeUntil(rest, "@+"), name, variant, given);
+  }
+  if (!rest.empty()) {
+    throw InputError(
+        fmt::format("variant \"{}\": \"{}\" is out of place; expected TECHNIQUE[@{}][+OPTION=CHOICE]…", name,
+                    rest, kPublished));
+  }
+  return variant;
+}
+
+std::vector<Variant> DefaultVariants(const std::vector<Technique>& techniques) {
+  std::vector<Variant> variants;
+  for (const Technique& technique : techniques) {
+    variants.push_back(DefaultVariant(technique));
+    if (Variant published = PublishedVariant(technique); published != variants.back()) {
+      variants.push_back(std::move(published));
+    }
+  }
+  return variants;
+}
+
+std::vector<Variant> AllVariants(const std::vector<Technique>& techniques) {
+  std::vector<Variant> variants;
+  for (const Technique& technique : techniques) {
+    std::vector<Variant> combinations{Variant{&technique, {}}};
+    for (const Option& option : technique.options) {
+      std::vector<Variant> longer;
+      for (const Variant& shorter : combinations) {
+        for (const Choice& choice : option.choices) {
+          longer.push_back(shorter);
+          longer.back().options[option.name] = choice.name;
+        }
+      }
+      combinations = std::move(longer);
+    }
+    variants.insert(variants.end(), combinations.begin(), combinations.end());
+  }
+  return variants;
+}
+
+std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene) {
+  const std::vector<LightShape>& shapes = variant.technique->shapes;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    if (std::find(shapes.begin(), shapes.end(), light.shape) != shapes.end()) continue;
+    const std::string who =
+        light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light \"{}\"", light.name);
+    return fmt::format("{} shades {}; {} is a {}", variant.technique->name, ShapeList(shapes), who,
+                       Name(light.shape));
+  }
+  return std::nullopt;
+}
+
+}  // namespace arealab
