@@ -6,7 +6,8 @@
 
 namespace arealab {
 
-// message: "file:line: what is wrong; expected what" where there is a file and a line, else "what; expected what".
+// message: "file:line: what is wrong; expected what" where there is a file and a line, else "what; expected
+// what".
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,5 @@
-// What a scene is, after reading: plain structs, every length in metres, every angle in radians, colours in linear sRGB.
+// What a scene is, after reading: plain structs, every length in metres, every angle in radians, colours in
+// linear sRGB.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,11 @@ enum class LightShape { kRectangle, kDisk, kSphere };
 // "rectangle", "disk", "sphere": as written in scene files, technique headers and results.
 const char* Name(LightShape shape);
 
-// An emitter of constant radiance. axis_x, axis_y, normal are unit and right-handed: normal = axis_x × axis_y, and the
-// lit side is the one that normal points to (a sphere emits everywhere and ignores the axes).
+// Relative luminance of linear sRGB: a quantity in W per channel keeps its unit, Rec. 709 weights.
+double Luminance(const glm::dvec3& color);
+
+// An emitter of constant radiance. axis_x, axis_y, normal are unit and right-handed: normal = axis_x ×
+// axis_y, and the lit side is the one that normal points to (a sphere emits everywhere and ignores the axes).
 struct Light {
   std::string name;
   LightShape shape = LightShape::kRectangle;
@@ -26,8 +30,9 @@ struct Light {
   glm::dvec3 axis_x{1.0, 0.0, 0.0};
   glm::dvec3 axis_y{0.0, 1.0, 0.0};
   glm::dvec3 normal{0.0, 0.0, 1.0};
-  glm::dvec2 half_size{0.5};  // m: half width and half height along the axes; disk and sphere: the radius, twice
-  glm::dvec3 radiance{1.0};   // in the scene's unit, linear sRGB primaries
+  glm::dvec2 half_size{
+      0.5};  // m: half width and half height along the axes; disk and sphere: the radius, twice
+  glm::dvec3 radiance{1.0};  // in the scene's unit, linear sRGB primaries
   bool two_sided = false;
 
   double Area() const;  // m², of the lit side or sides together; sphere: 4πR²
@@ -37,13 +42,15 @@ struct Light {
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<glm::vec4> pixels;  // row 0 is the top; colours already linear, data (normals, roughness) as stored
+  std::vector<glm::vec4>
+      pixels;  // row 0 is the top; colours already linear, data (normals, roughness) as stored
 };
 
 struct Material {
   std::string name;
   glm::vec3 base_color{0.8f};
-  glm::vec2 roughness{0.5f};  // artist's roughness in [0, 1] at texture coordinate u = 0 and u = 1, linear between
+  glm::vec2 roughness{
+      0.5f};  // artist's roughness in [0, 1] at texture coordinate u = 0 and u = 1, linear between
   float metalness = 0.0f;
   float normal_scale = 1.0f;
   std::shared_ptr<const Image> base_color_texture;          // multiplies base_color
@@ -55,7 +62,7 @@ struct Vertex {
   glm::vec3 position;  // m, world
   glm::vec3 normal;    // unit, world
   glm::vec4 tangent;   // xyz unit, w = ±1 the bitangent's sign (glTF)
-  glm::vec2 uv;
+  glm::vec2 uv;        // glTF: (0, 0) is the top left corner of a texture; textures repeat
 };
 
 struct Mesh {
@@ -72,8 +79,8 @@ struct Camera {
 };
 
 struct Scene {
-  std::string name;            // the file's stem
-  std::string question;        // the file's first line, without the comment mark: what this scene asks
+  std::string name;      // the file's stem
+  std::string question;  // the file's first line, without the comment mark: what this scene asks
   std::filesystem::path file;
   Units units = Units::kRadiometric;
   double exposure = 0.0;  // EV: pictures show radiance × 2^exposure
@@ -86,7 +93,8 @@ struct Scene {
 // Reads and checks a scene file. Throws InputError ("file:line: what; expected what").
 Scene LoadScene(const std::filesystem::path& file);
 
-// The scene files that come with AreaLab, in the order of the report.
+// The scene files that come with AreaLab, in the order of the report. The environment variable AREALAB_SCENES
+// names another folder of scenes.
 std::vector<std::filesystem::path> BuiltInScenes();
 
 // A built-in scene's name ("gloss") or a path, to a path. Throws InputError naming the built-in scenes.

@@ -1,0 +1,117 @@
+#include "scenes/shapes.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+namespace arealab {
+namespace {
+
+// 160 × 320 quads: a quad spans π/160 both ways at the equator, so its middle is half a diagonal, 0.0139 rad,
+// from a corner and lies 1 − cos 0.0139 = 9.6e-5 radii deep.
+constexpr int kSphereRings = 160;
+constexpr int kSphereSegments = 320;
+
+void AddVertex(Mesh& mesh, const Placement& placement, const glm::dvec3& position, const glm::dvec3& normal,
+               const glm::dvec3& tangent, const glm::dvec2& uv) {
+  mesh.vertices.push_back({glm::vec3(placement.position + placement.rotation * position),
+                           glm::vec3(placement.rotation * normal),
+                           glm::vec4(glm::vec3(placement.rotation * tangent), 1.0f), glm::vec2(uv)});
+}
+
+// A rectangle about `center` that spans 2a × 2b and faces a × b.
+void AddRectangle(Mesh& mesh, const Placement& placement, const glm::dvec3& center, const glm::dvec3& a,
+                  const glm::dvec3& b) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const glm::dvec3 tangent = glm::normalize(a);
+  const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
+  AddVertex(mesh, placement, center - a - b, normal, tangent, {0.0, 1.0});
+  AddVertex(mesh, placement, center + a - b, normal, tangent, {1.0, 1.0});
+  AddVertex(mesh, placement, center + a + b, normal, tangent, {1.0, 0.0});
+  AddVertex(mesh, placement, center - a + b, normal, tangent, {0.0, 0.0});
+  for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + corner);
+}
+
+}  // namespace
+
+glm::dmat3 RotationFromDegrees(const glm::dvec3& degrees) {
+  const glm::dvec3 angle = glm::radians(degrees);
+  const glm::dvec3 c = glm::cos(angle);
+  const glm::dvec3 s = glm::sin(angle);
+  // GLM's matrices are filled column by column.
+  const glm::dmat3 about_x(1.0, 0.0, 0.0, 0.0, c.x, s.x, 0.0, -s.x, c.x);
+  const glm::dmat3 about_y(c.y, 0.0, -s.y, 0.0, 1.0, 0.0, s.y, 0.0, c.y);
+  const glm::dmat3 about_z(c.z, s.z, 0.0, -s.z, c.z, 0.0, 0.0, 0.0, 1.0);
+  return about_z * about_y * about_x;
+}
+
+Mesh MakePlane(const glm::dvec2& size, const Placement& placement) {
+  Mesh mesh;
+  AddRectangle(mesh, placement, glm::dvec3(0.0), {0.5 * size.x, 0.0, 0.0}, {0.0, 0.5 * size.y, 0.0});
+  return mesh;
+}
+
+Mesh MakeBox(const glm::dvec3& size, const Placement& placement) {
+  Mesh mesh;
+  const glm::dvec3 x(0.5 * size.x, 0.0, 0.0);
+  const glm::dvec3 y(0.0, 0.5 * size.y, 0.0);
+  const glm::dvec3 z(0.0, 0.0, 0.5 * size.z);
+  AddRectangle(mesh, placement, x, y, z);
+  AddRectangle(mesh, placement, -x, -y, z);
+  AddRectangle(mesh, placement, y, -x, z);
+  AddRectangle(mesh, placement, -y, x, z);
+  AddRectangle(mesh, placement, z, x, y);
+  AddRectangle(mesh, placement, -z, x, -y);
+  return mesh;
+}
+
+Mesh MakeSphere(double radius, const Placement& placement) {
+  Mesh mesh;
+  for (int ring = 0; ring <= kSphereRings; ++ring) {
+    const double v = static_cast<double>(ring) / kSphereRings;
+    const double theta = v * glm::pi<double>();
+    for (int segment = 0; segment <= kSphereSegments; ++segment) {
+      const double u = static_cast<double>(segment) / kSphereSegments;
+      const double phi = u * glm::two_pi<double>();
+      const glm::dvec3 normal(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                              std::cos(theta));
+      AddVertex(mesh, placement, radius * normal, normal, {-std::sin(phi), std::cos(phi), 0.0}, {u, v});
+    }
+  }
+  const auto row = static_cast<std::uint32_t>(kSphereSegments + 1);
+  for (std::uint32_t ring = 0; ring < kSphereRings; ++ring) {
+    for (std::uint32_t segment = 0; segment < kSphereSegments; ++segment) {
+      const std::uint32_t upper = ring * row + segment;
+      const std::uint32_t lower = upper + row;
+      // At a pole one of the quad's triangles has no area.
+      if (ring > 0) mesh.indices.insert(mesh.indices.end(), {upper, lower, upper + 1});
+      if (ring + 1 < kSphereRings) mesh.indices.insert(mesh.indices.end(), {upper + 1, lower, lower + 1});
+    }
+  }
+  return mesh;
+}
+
+Mesh MakeHeightField(const glm::dvec2& size, const glm::ivec2& cells, const HeightFunction& height,
+                     const Placement& placement) {
+  Mesh mesh;
+  for (int j = 0; j <= cells.y; ++j) {
+    for (int i = 0; i <= cells.x; ++i) {
+      const glm::dvec2 uv(static_cast<double>(i) / cells.x, static_cast<double>(j) / cells.y);
+      const double x = (uv.x - 0.5) * size.x;
+      const double y = (0.5 - uv.y) * size.y;
+      const glm::dvec3 h = height(x, y);
+      AddVertex(mesh, placement, {x, y, h.x}, glm::normalize(glm::dvec3(-h.y, -h.z, 1.0)),
+                glm::normalize(glm::dvec3(1.0, 0.0, h.y)), uv);
+    }
+  }
+  const auto row = static_cast<std::uint32_t>(cells.x + 1);
+  for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(cells.y); ++j) {
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(cells.x); ++i) {
+      const std::uint32_t far = j * row + i;
+      const std::uint32_t near = far + row;
+      mesh.indices.insert(mesh.indices.end(), {near, near + 1, far + 1, near, far + 1, far});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace arealab
