@@ -1,0 +1,90 @@
+// Fits, writes, reads and measures the tables that the LTC techniques look up: `arealab fit`.
+//
+// All LTC tables are size × size RGBA float images. Column i is the artist's roughness i/(size − 1), linear,
+// with alpha = max(roughness², 1e-4); row j (row 0 is the file's first scan line and, uploaded in that order,
+// texture coordinate v = 0) is the view angle at x = j/(size − 1). Texel centres are the nodes: a position x
+// in [0, 1] is looked up at (x·(size − 1) + ½)/size. The local frame is T1 = the view direction's unit
+// projection on the surface, T2 = N × T1, N.
+//
+// ltc_ggx_polygon.exr, ltc_ggx_cosine.exr (ours)
+//   x = √((1 − cos θ)/(1 − cos 89°)), clamped to 1. The channels are the mirror-frame terms m' of
+//     M⁻¹ = [[m0, 0, m2], [0, 1, 0], [m1, 0, m3]] (rows), from local directions to cosine space:
+//   m0' = m0 c + m2 s, m1' = m1 c + m3 s, m2' = m2 c − m0 s, m3' = m3 c − m1 s, with c = cos θ and s = sin θ
+//   of the node. After the look-up, with the pixel's own c (not clamped to 89°) and s: m0 = m0' c − m2' s, m1
+//   = m1' c − m3' s, m2 = m2' c + m0' s, m3 = m3' c + m1' s.
+// ltc_ggx_polygon_terms.exr, ltc_ggx_cosine_terms.exr: R, G, B, A = magnitude, Schlick term, cosine weight,
+// b, so that
+//     specular = (LTC + B · E) · (F0 · (R − G) + G) · radiance,
+//   LTC the transformed polygon's form factor (clipped at z = 0 after M⁻¹) and E the polygon's own (clipped
+//   at the true horizon; the diffuse integral). R = albedo/(1 − b + B) and G = ∫ρ(1 − v·h)⁵/(1 − b + B): with
+//   F = 1 and a light that covers the whole sky the result is the albedo. B = 0 in the polygon table. A = b,
+//   the LTC's share below the true horizon (for inspection; shaders need not read it).
+// ltc_ggx_l3.exr, ltc_ggx_l3_terms.exr (the published kind [Heitz et al. 2016])
+//   x = √(1 − cos θ), the last row at θ = 1.57. The channels are m0 … m3 of the same M⁻¹ in the local frame,
+//   no rotation after the look-up. Terms: R = albedo, G = ∫ρ(1 − v·h)⁵, B = A = 0: specular = LTC · (F0 · (R
+//   − G) + G) · radiance.
+// sphere.exr, one channel [Snyder 1996; Hill & Heitz 2016]: column i is y = 2i/(size − 1) − 1, the cosine of
+// the angle
+//   between normal and the sphere's centre; row j is l = |F| = sin²σ = j/(size − 1), σ the sphere's half
+//   angle. The value is the form factor of the sphere's part above the horizon over sin²σ (in its limit
+//   max(y, 0) for l = 0). The clipped form factor of a polygon with vector form factor F is about |F| ·
+//   table(F.z/|F|, |F|).
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace arealab {
+
+enum class FitKind { kPolygon, kCosine, kPublished };
+
+struct LtcTables {
+  FitKind kind = FitKind::kPolygon;
+  int size = 0;
+  std::vector<glm::vec4> matrix;  // row-major, [row · size + column]
+  std::vector<glm::vec4> terms;
+};
+
+// What a shader gets from the two bilinear look-ups, unrotated: M⁻¹ in the local frame and the terms'
+// channels.
+struct LtcLookup {
+  glm::dvec4 m;
+  glm::dvec4 terms;
+};
+LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v);
+
+struct FitOptions {
+  int size = 64;                    // nodes per axis, at least 2
+  int rectangles = 300;             // of the polygon loss, per cell
+  std::vector<std::string> tables;  // stems among TableNames(); empty: all
+};
+
+// "ltc_ggx_cosine", "ltc_ggx_l3", "ltc_ggx_polygon", "sphere".
+std::vector<std::string> TableNames();
+
+// Fits one kind on all cores; the same numbers on any number of threads. `progress` (may be empty) gets the
+// fraction done, one call at a time.
+LtcTables FitLtc(FitKind kind, const FitOptions& options, const std::function<void(double)>& progress = {});
+
+// The nodes of `columns` alone, as FitLtc finds them (a view-angle chain per column): what the tests refit.
+LtcTables FitLtcColumns(FitKind kind, const FitOptions& options, const std::vector<int>& columns);
+
+// Row-major [row · size + column], as in sphere.exr.
+std::vector<float> FitSphere(int size);
+
+// Form factor of the part above the horizon of a sphere with sin²σ = l, its centre at elevation cosine y
+// [Snyder 1996].
+double ClippedSphere(double y, double l);
+
+// Writes NAME.exr and NAME_terms.exr into `folder`, each complete or not at all, the same bytes for the same
+// numbers. Throws InputError for an unknown table name or where the folder cannot be written.
+void FitTables(const std::filesystem::path& folder, const FitOptions& options,
+               const std::function<void(double)>& progress = {});
+
+// Reads NAME.exr and NAME_terms.exr. Throws InputError.
+LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind);
+
+}  // namespace arealab

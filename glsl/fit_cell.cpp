@@ -1,0 +1,395 @@
+#include "glsl/fit_cell.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+
+namespace arealab::fit {
+namespace {
+
+constexpr int kAlbedoNodes = 48;  // albedo to 1e-7 (measured), 1e-8 over most of the table
+
+// Four terms of P and, where it is free, the weight of the cosine lobe.
+using Unknowns = Eigen::Matrix<double, 5, 1>;
+using Square = Eigen::Matrix<double, 5, 5>;
+
+struct Expansion {  // of a loss about a point: value, gradient/2 and the Gauss–Newton matrix/2
+  double loss = 0.0;
+  Unknowns gradient = Unknowns::Zero();
+  Square hessian = Square::Zero();
+
+  void Add(double residual, const Unknowns& jacobian, double weight = 1.0) {
+    loss += weight * residual * residual;
+    gradient += (weight * residual) * jacobian;
+    hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+  }
+};
+
+bool Admissible(const Unknowns& p) {
+  return p.allFinite() && p[0] > 0.0 && p[3] > 0.0 && Determinant(p.head<4>()) > 0.0;
+}
+
+// Levenberg–Marquardt on the active unknowns: damping × 0.1 after an accepted step, × 10 after a refused one
+// [Marquardt 1963]. Ends when a step gains less than `gain` of the loss.
+template <typename Function>
+double Minimise(const Function& expand, Unknowns* p, const std::array<bool, 5>& active, int most_steps,
+                double gain) {
+  double damping = 1e-3;
+  Expansion here = expand(*p);
+  for (int step = 0; step < most_steps; ++step) {
+    Square matrix = here.hessian.selfadjointView<Eigen::Lower>();
+    Unknowns right = -here.gradient;
+    for (int i = 0; i < 5; ++i) {
+      if (active[static_cast<std::size_t>(i)]) {
+        matrix(i, i) *= 1.0 + damping;
+      } else {
+        matrix.row(i).setZero();
+        matrix.col(i).setZero();
+        matrix(i, i) = 1.0;
+        right[i] = 0.0;
+      }
+    }
+    const Unknowns trial = *p + matrix.ldlt().solve(right);
+    if (!Admissible(trial)) {
+      damping *= 10.0;
+      if (damping > 1e8) break;
+      continue;
+    }
+    Expansion there = expand(trial);
+    if (there.loss <= here.loss) {
+      const double gained = here.loss - there.loss;
+      *p = trial;
+      here = there;
+      damping = std::max(damping * 0.1, 1e-9);
+      if (gained <= gain * here.loss) break;
+    } else {
+      damping *= 10.0;
+      if (damping > 1e8) break;
+    }
+  }
+  return here.loss;
+}
+
+// Nodes in whitened coordinates.
+struct WhiteNodes {
+  std::vector<glm::dvec3> direction;  // not unit
+  double scale = 1.0;                 // |det| of the whitening
+};
+
+WhiteNodes Whiten(const Whitening& whitening, const Nodes& nodes) {
+  WhiteNodes white;
+  white.scale = whitening.width * whitening.depth;
+  white.direction.reserve(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    white.direction.push_back(whitening.Apply({nodes.x[i], nodes.y[i], nodes.z[i]}));
+  return white;
+}
+
+// Density of the lobe P ∘ whitening at one whitened direction, 1/sr, and ∂/∂p where asked for [Heitz et al.
+// 2016, eq. 1].
+double LtcDensity(const Terms& p, const glm::dvec3& v, double scale, Terms* gradient) {
+  const double ux = p[0] * v.x + p[2] * v.z, uz = p[1] * v.x + p[3] * v.z;
+  if (uz <= 0.0) {
+    if (gradient) gradient->setZero();
+    return 0.0;
+  }
+  const double determinant = Determinant(p);
+  const double length2 = ux * ux + v.y * v.y + uz * uz;
+  const double base = scale / (glm::pi<double>() * length2 * length2);
+  const double density = uz * determinant * base;
+  if (gradient) {
+    const double by_x = -4.0 * ux / length2 * density;
+    const double by_z = determinant * base - 4.0 * uz / length2 * density;
+    const double by_determinant = uz * base;
+    *gradient = {by_x * v.x + by_determinant * p[3], by_z * v.x - by_determinant * p[2],
+                 by_x * v.z - by_determinant * p[1], by_z * v.z + by_determinant * p[0]};
+  }
+  return density;
+}
+
+// ∫(ρ − k·LTC)² above the horizon over ∫ρ², with k = albedo/(1 − b), plus the penalty on b.
+Expansion ExpandDensityLoss(const Unknowns& p, const Nodes& nodes, const WhiteNodes& white,
+                            const Whitening& whitening, double albedo, double total, double leak_penalty) {
+  Expansion sum;
+  const Terms terms = p.head<4>();
+  const Leak leak = BelowHorizon(whitening, terms);
+  const double magnitude = albedo / (1.0 - leak.share);
+  Unknowns jacobian = Unknowns::Zero();
+  Terms gradient;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double density = LtcDensity(terms, white.direction[i], white.scale, &gradient);
+    jacobian.head<4>() = magnitude * (gradient + density / (1.0 - leak.share) * leak.gradient);
+    sum.Add(magnitude * density - nodes.density[i], jacobian, nodes.weight[i] / total);
+  }
+  jacobian.head<4>() = leak.gradient;
+  sum.Add(leak.share, jacobian, leak_penalty);
+  return sum;
+}
+
+// Adds nodes of the directions below the true horizon, where ρ = 0: polar about +z of the whitened space, in
+// which a fitted lobe has about unit width, from the horizon's great circle to the opposite pole.
+void AppendLowerNodes(const Whitening& whitening, int count, Nodes* nodes) {
+  const double qx = -whitening.axis_x / whitening.width, qz = whitening.axis_z / whitening.depth;
+  for (const auto& [phi_position, phi_weight] : GaussRule(count)) {
+    const double phi = glm::pi<double>() * phi_position;
+    const double horizon = std::atan2(qz, -qx * std::cos(phi));
+    const double span = glm::pi<double>() - horizon;
+    for (const auto& [position, weight] : GaussRule(count)) {
+      const double psi = horizon + span * position;
+      const glm::dvec3 w(std::sin(psi) * std::cos(phi), std::sin(psi) * std::sin(phi), std::cos(psi));
+      const glm::dvec3 v = whitening.Undo(w);
+      const double length = glm::length(v);
+      const double jacobian = std::sin(psi) * span * glm::two_pi<double>() /
+                              (whitening.width * whitening.depth * length * length * length);
+      nodes->x.push_back(v.x / length);
+      nodes->y.push_back(v.y / length);
+      nodes->z.push_back(v.z / length);
+      nodes->weight.push_back(jacobian * weight * phi_weight);
+      nodes->density.push_back(0.0);
+      nodes->schlick.push_back(0.0);
+    }
+  }
+}
+
+// Whitened terms of the isotropic lobe of a given width about `direction` (in the plane of incidence),
+// narrowed in that plane by `squeeze`.
+Terms StartAbout(const Whitening& whitening, const glm::dvec3& direction, double width, double squeeze) {
+  const Whitening about{direction.x, direction.z, 1.0, 1.0};
+  return whitening.FromLocal(about.ToLocal(Terms(squeeze, 0.0, 0.0, width)));
+}
+
+struct DensityStage {
+  Unknowns p;
+  double loss = 0.0;
+};
+
+DensityStage FitDensity(const View& view, const Nodes& nodes, const Whitening& whitening,
+                        const LobeMoments& moments, const Cell* previous, double leak_penalty) {
+  const WhiteNodes white = Whiten(whitening, nodes);
+  double total = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    total += nodes.weight[i] * nodes.density[i] * nodes.density[i];
+  const auto expand = [&](const Unknowns& p) {
+    return ExpandDensityLoss(p, nodes, white, whitening, moments.albedo, total, leak_penalty);
+  };
+  std::vector<Terms> starts;
+  const double width = 2.0 * view.alpha / (1.0 + view.alpha);
+  if (previous) {
+    starts.push_back(StartAbout(whitening, moments.mean, width, 1.0));
+    starts.push_back(StartAbout(whitening, moments.mean, width * view.cosine, view.cosine));
+    starts.push_back(whitening.FromLocal(previous->m));
+    starts.push_back(Terms(1.0, 0.0, 0.0, 1.0));
+  } else {
+    starts.push_back(Terms(1.0, 0.0, 0.0, width / whitening.depth));
+  }
+  const bool free = previous != nullptr;
+  const std::array<bool, 5> active{free, free, free, true, false};
+  DensityStage best;
+  best.loss = std::numeric_limits<double>::infinity();
+  for (const Terms& start : starts) {
+    Unknowns p = Unknowns::Zero();
+    p.head<4>() = start;
+    if (!Admissible(p)) continue;
+    const double loss = Minimise(expand, &p, active, 30, 1e-6);
+    if (loss < best.loss) best = {p, loss};
+  }
+  return best;
+}
+
+Cell MakeCell(const Whitening& whitening, const LobeMoments& moments, const Unknowns& p) {
+  Cell cell;
+  cell.m = whitening.ToLocal(p.head<4>());
+  cell.albedo = moments.albedo;
+  cell.schlick = moments.schlick;
+  cell.leak = BelowHorizon(whitening, p.head<4>()).share;
+  cell.cosine = p[4];
+  return cell;
+}
+
+// A quad's integral of ρ, by the closed form of a control lobe and a mask over the nodes for what the control
+// misses.
+class MaskedIntegral {
+ public:
+  MaskedIntegral(const Nodes& nodes, const std::vector<double>& residual) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      x_.push_back(static_cast<float>(nodes.x[i]));
+      y_.push_back(static_cast<float>(nodes.y[i]));
+      z_.push_back(static_cast<float>(nodes.z[i]));
+      share_.push_back(static_cast<float>(nodes.weight[i] * residual[i]));
+    }
+  }
+  double Sum(const Quad& quad) const {
+    std::array<float, 12> n;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const glm::dvec3 unit = glm::normalize(quad.normal[i]);
+      n[3 * i] = static_cast<float>(unit.x);
+      n[3 * i + 1] = static_cast<float>(unit.y);
+      n[3 * i + 2] = static_cast<float>(unit.z);
+    }
+    float sum = 0.0f;
+    std::array<float, 8> partial{};
+    const std::size_t blocks = x_.size() / 8;
+    for (std::size_t block = 0; block < blocks; ++block) {
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        const std::size_t i = block * 8 + lane;
+        const float d0 = n[0] * x_[i] + n[1] * y_[i] + n[2] * z_[i];
+        const float d1 = n[3] * x_[i] + n[4] * y_[i] + n[5] * z_[i];
+        const float d2 = n[6] * x_[i] + n[7] * y_[i] + n[8] * z_[i];
+        const float d3 = n[9] * x_[i] + n[10] * y_[i] + n[11] * z_[i];
+        const float least = std::min(std::min(d0, d1), std::min(d2, d3));
+        partial[lane] += least > 0.0f ? share_[i] : 0.0f;
+      }
+    }
+    for (std::size_t i = blocks * 8; i < x_.size(); ++i) {
+      const float d0 = n[0] * x_[i] + n[1] * y_[i] + n[2] * z_[i];
+      const float d1 = n[3] * x_[i] + n[4] * y_[i] + n[5] * z_[i];
+      const float d2 = n[6] * x_[i] + n[7] * y_[i] + n[8] * z_[i];
+      const float d3 = n[9] * x_[i] + n[10] * y_[i] + n[11] * z_[i];
+      if (std::min(std::min(d0, d1), std::min(d2, d3)) > 0.0f) sum += share_[i];
+    }
+    for (float value : partial) sum += value;
+    return static_cast<double>(sum);
+  }
+
+ private:
+  std::vector<float> x_, y_, z_, share_;
+};
+
+}  // namespace
+
+Whitening MirrorWhitening(const View& view) {
+  // The half vector's slope across is (l·n + v·n)/2 × the light's: a lobe that spreads to heights of α widens
+  // by as much.
+  const double width = std::min(1.0, view.cosine + 0.5 * view.alpha);
+  return {-view.sine, view.cosine, width, 2.0 * view.alpha / (1.0 + view.alpha) * width};
+}
+
+LossQuads MakeLossQuads(int count) {
+  return {RandomRectangles(count / 2, 11), RandomLobeQuads(count - count / 2, 12)};
+}
+
+std::vector<double> LobeIntegrals(const View& view, const std::vector<Quad>& quads, int nodes,
+                                  const Cell& control) {
+  const Nodes both = BothSides(UpperNodes(view, nodes, nodes));
+  const double magnitude = control.albedo / (1.0 - control.leak);
+  std::vector<double> residual(both.size());
+  for (std::size_t i = 0; i < both.size(); ++i)
+    residual[i] =
+        both.density[i] - magnitude * LtcDensity(control.m, {both.x[i], both.y[i], both.z[i]}, 1.0, nullptr);
+  const MaskedIntegral masked(both, residual);
+  std::vector<double> integrals;
+  integrals.reserve(quads.size());
+  for (const Quad& quad : quads)
+    integrals.push_back(magnitude * UpperQuadIntegral(control.m, quad) + masked.Sum(quad));
+  return integrals;
+}
+
+Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& settings,
+                    const Cell* previous) {
+  const Nodes upper = UpperNodes(view, settings.nodes, settings.nodes);
+  const LobeMoments moments = Moments(UpperNodes(view, kAlbedoNodes, kAlbedoNodes));
+  const Whitening whitening = MirrorWhitening(view);
+  const DensityStage density = FitDensity(view, upper, whitening, moments, previous, settings.leak_penalty);
+
+  std::vector<Quad> local = quads.world;
+  for (const Quad& quad : quads.lobe) {
+    std::array<glm::dvec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = whitening.Undo(quad.corner[i]);
+    local.push_back(MakeQuad(corners));
+  }
+  const std::vector<double> wanted =
+      LobeIntegrals(view, local, settings.nodes, MakeCell(whitening, moments, density.p));
+  std::vector<Quad> white;
+  std::vector<double> cosine;
+  double total = 0.0;
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    white.push_back(Transform(whitening, local[i]));
+    total += wanted[i] * wanted[i];
+    cosine.push_back(settings.with_cosine ? UpperQuadIntegral(Terms(1.0, 0.0, 0.0, 1.0), local[i]) : 0.0);
+  }
+  const auto expand = [&](const Unknowns& p) {
+    Expansion sum;
+    const Terms terms = p.head<4>();
+    const Leak leak = BelowHorizon(whitening, terms);
+    const double kept = 1.0 - leak.share, magnitude = (moments.albedo - p[4]) / kept;
+    Unknowns jacobian;
+    Terms gradient;
+    for (std::size_t i = 0; i < white.size(); ++i) {
+      const double integral = QuadIntegral(terms, white[i], &gradient);
+      jacobian.head<4>() = magnitude * (gradient + integral / kept * leak.gradient);
+      jacobian[4] = cosine[i] - integral / kept;
+      sum.Add(magnitude * integral + p[4] * cosine[i] - wanted[i], jacobian, 1.0 / total);
+    }
+    jacobian.head<4>() = leak.gradient;
+    jacobian[4] = 0.0;
+    sum.Add(leak.share, jacobian, settings.leak_penalty);
+    jacobian.setZero();
+    jacobian[4] = 1.0;
+    sum.Add(p[4], jacobian, settings.cosine_penalty);
+    return sum;
+  };
+  const bool free = previous != nullptr;
+  const std::array<bool, 5> active{free, free, free, true, settings.with_cosine};
+  Unknowns best = density.p;
+  double best_loss = Minimise(expand, &best, active, 20, 1e-5);
+  if (previous) {
+    Unknowns other = Unknowns::Zero();
+    other.head<4>() = whitening.FromLocal(previous->m);
+    other[4] = previous->cosine;
+    if (Admissible(other)) {
+      const double loss = Minimise(expand, &other, active, 20, 1e-5);
+      if (loss < best_loss) best = other;
+    }
+  }
+  return MakeCell(whitening, moments, best);
+}
+
+PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, const AverageFrameTerms& start) {
+  const LobeMoments moments = Moments(UpperNodes(view, kAlbedoNodes, kAlbedoNodes));
+  const Whitening mirror = MirrorWhitening(view);
+  Nodes all = UpperNodes(view, nodes, nodes);
+  AppendLowerNodes(mirror, nodes, &all);
+  const glm::dvec3 mean = isotropic ? glm::dvec3(0.0, 0.0, 1.0) : moments.mean;
+  const Whitening frame{mean.x, mean.z, 1.0, 1.0};
+  const WhiteNodes white = Whiten(frame, all);
+  double total = 0.0;
+  for (std::size_t i = 0; i < all.size(); ++i) total += all.weight[i] * std::pow(all.density[i], 3.0);
+  // |e|³ = |e|·e²: each step is one of least squares weighted by |e|, doubled in the matrix for the weight's
+  // own slope.
+  const auto expand = [&](const Unknowns& p) {
+    Expansion sum;
+    const Terms terms = p.head<4>();
+    Unknowns jacobian = Unknowns::Zero();
+    Terms gradient;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double error =
+          moments.albedo * LtcDensity(terms, white.direction[i], 1.0, &gradient) - all.density[i];
+      jacobian.head<4>() = moments.albedo * gradient;
+      const double weight = all.weight[i] / total * std::abs(error);
+      sum.loss += weight * error * error;
+      sum.gradient += (1.5 * weight * error) * jacobian;
+      sum.hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, 3.0 * weight);
+    }
+    return sum;
+  };
+  // M⁻¹ in the average frame over its middle element: (m22/m11, 0, −m13 m22/m11; ·; 0, 0, m22), rows.
+  Unknowns p = Unknowns::Zero();
+  p.head<4>() = isotropic ? Terms(1.0, 0.0, 0.0, start.m11)
+                          : Terms(start.m22 / start.m11, 0.0, -start.m13 * start.m22 / start.m11, start.m22);
+  Minimise(expand, &p, {!isotropic, false, !isotropic, true, false}, 100, 1e-9);
+  PublishedCell result;
+  result.cell = MakeCell(frame, moments, p);
+  result.terms = {p[3] / p[0], p[3], -p[2] / p[0]};
+  return result;
+}
+
+Cell FitDensityCell(const View& view, int nodes, const Cell* previous) {
+  const Nodes upper = UpperNodes(view, nodes, nodes);
+  const LobeMoments moments = Moments(upper);
+  const Whitening whitening = MirrorWhitening(view);
+  return MakeCell(whitening, moments, FitDensity(view, upper, whitening, moments, previous, 0.0).p);
+}
+
+}  // namespace arealab::fit

@@ -1,0 +1,68 @@
+// The fit of one node (roughness, view angle) of an LTC table. Internal to the fit; the public interface is
+// glsl/fit.h.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "glsl/fit_lobe.h"
+#include "glsl/fit_polygon.h"
+
+namespace arealab::fit {
+
+struct Cell {
+  Terms m{1.0, 0.0, 0.0, 1.0};  // M⁻¹ in the local frame, middle element 1
+  double albedo = 0.0;          // ∫ρ
+  double schlick = 0.0;         // ∫ρ (1 − v·h)⁵
+  double leak = 0.0;            // the lobe's share below the horizon
+  double cosine = 0.0;          // integral of the cosine lobe that stands beside the LTC
+};
+
+// Whitening about the mirror direction: widths of the GGX lobe in the plane of incidence (2α) and across it
+// (2α cos θ), widened as the lobe reaches over the horizon. It only conditions the fit; no result depends on
+// its exact value.
+Whitening MirrorWhitening(const View& view);
+
+// What the polygon loss compares on, drawn once and used by every cell (common random numbers keep neighbours
+// alike).
+struct LossQuads {
+  std::vector<Quad> world;  // rectangles in the local frame
+  std::vector<Quad> lobe;   // parallelograms for a lobe of unit width
+};
+LossQuads MakeLossQuads(int count);
+
+struct PolygonFit {
+  int nodes = 24;             // per axis of the quadrature
+  double leak_penalty = 0.3;  // × b²
+  bool with_cosine = false;
+  double cosine_penalty = 0.05;  // × w²
+};
+
+// Findings § 1, points 1 and 2: least squares on the density, then on the integrals over `quads`. `previous`
+// is the fit of the same roughness at the next smaller angle; without it the cell is the isotropic one at
+// normal incidence.
+Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& settings,
+                    const Cell* previous);
+
+// ∫ρ over each quad (in the local frame), by `nodes`² nodes per side of the plane of incidence: the closed
+// form of a control lobe, and a mask over the nodes for what that misses. Exact for any control in the limit
+// of many nodes.
+std::vector<double> LobeIntegrals(const View& view, const std::vector<Quad>& quads, int nodes,
+                                  const Cell& control);
+
+// The first of the two stages alone.
+Cell FitDensityCell(const View& view, int nodes, const Cell* previous);
+
+// Heitz et al. 2016: three terms about the average direction, ∫|ρ − albedo·LTC|³ over all directions, from
+// the given start. The chain of starts is that of the authors' program: the next rougher cell at normal
+// incidence, else the previous angle.
+struct AverageFrameTerms {
+  double m11 = 1.0, m22 = 1.0, m13 = 0.0;
+};
+struct PublishedCell {
+  Cell cell;
+  AverageFrameTerms terms;
+};
+PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, const AverageFrameTerms& start);
+
+}  // namespace arealab::fit

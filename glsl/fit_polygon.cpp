@@ -1,0 +1,209 @@
+#include "glsl/fit_polygon.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+namespace arealab::fit {
+namespace {
+
+// SplitMix64 [Steele et al. 2014]: its stream is defined bit by bit, unlike the standard library's
+// distributions.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  double Uniform() {  // [0, 1), 53 bits
+    state_ += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+  glm::dvec3 Direction(double least_z) {  // uniform on the cap z ≥ least_z
+    const double z = least_z + (1.0 - least_z) * Uniform();
+    const double phi = glm::two_pi<double>() * Uniform();
+    const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
+    return {radius * std::cos(phi), radius * std::sin(phi), z};
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+// Half axes of a rectangle whose plane has a uniformly random orientation.
+std::pair<glm::dvec3, glm::dvec3> RandomHalfAxes(Random& random, double least, double largest) {
+  const glm::dvec3 normal = random.Direction(-1.0);
+  const glm::dvec3 other = std::abs(normal.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
+  const glm::dvec3 u = glm::normalize(glm::cross(other, normal));
+  const glm::dvec3 v = glm::cross(normal, u);
+  const double turn = glm::two_pi<double>() * random.Uniform();
+  const double span = std::log(largest / least);
+  const double width = least * std::exp(span * random.Uniform());
+  const double height = least * std::exp(span * random.Uniform());
+  return {width * (std::cos(turn) * u + std::sin(turn) * v),
+          height * (std::cos(turn) * v - std::sin(turn) * u)};
+}
+
+Quad RectangleAround(const glm::dvec3& center, const glm::dvec3& a, const glm::dvec3& b) {
+  return MakeQuad({center + a + b, center - a + b, center - a - b, center + a - b});
+}
+
+}  // namespace
+
+Terms Whitening::ToLocal(const Terms& p) const {
+  const double m0 = p[0] * width, m1 = p[1] * width, m2 = p[2] * depth, m3 = p[3] * depth;
+  // Columns of the frame's transpose: (a.z, 0, a.x) and (−a.x, 0, a.z).
+  return {m0 * axis_z + m2 * axis_x, m1 * axis_z + m3 * axis_x, m2 * axis_z - m0 * axis_x,
+          m3 * axis_z - m1 * axis_x};
+}
+
+Terms Whitening::FromLocal(const Terms& m) const {
+  return {(m[0] * axis_z - m[2] * axis_x) / width, (m[1] * axis_z - m[3] * axis_x) / width,
+          (m[2] * axis_z + m[0] * axis_x) / depth, (m[3] * axis_z + m[1] * axis_x) / depth};
+}
+
+Leak BelowHorizon(const Whitening& whitening, const Terms& p) {
+  // The horizon's plane in the lobe's own space has the normal M⁻ᵀ z; the cosine's mass beyond it is ½(1 −
+  // its cosine).
+  const double qx = -whitening.axis_x / whitening.width, qz = whitening.axis_z / whitening.depth;
+  const double nx = p[3] * qx - p[1] * qz, nz = p[0] * qz - p[2] * qx;
+  const double length = std::sqrt(nx * nx + nz * nz);
+  const double f = nz / length;
+  const double by_nx = -nx * nz / (length * length * length), by_nz = nx * nx / (length * length * length);
+  Leak leak;
+  leak.share = 0.5 * (1.0 - f);
+  leak.gradient = -0.5 * Terms(by_nz * qz, -by_nx * qz, -by_nz * qx, by_nx * qx);
+  return leak;
+}
+
+Quad MakeQuad(std::array<glm::dvec3, 4> corners) {
+  const glm::dvec3 middle = corners[0] + corners[2];
+  if (glm::dot(glm::cross(corners[0], corners[1]), middle) < 0.0) std::swap(corners[1], corners[3]);
+  Quad quad{corners, {}};
+  for (std::size_t i = 0; i < 4; ++i) quad.normal[i] = glm::cross(corners[i], corners[(i + 1) % 4]);
+  return quad;
+}
+
+Quad Transform(const Whitening& whitening, const Quad& quad) {
+  std::array<glm::dvec3, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = whitening.Apply(quad.corner[i]);
+  return MakeQuad(corners);
+}
+
+double QuadIntegral(const Terms& p, const Quad& quad, Terms* gradient) {
+  std::array<glm::dvec3, 4> u;
+  std::array<double, 4> length;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::dvec3& v = quad.corner[i];
+    u[i] = {p[0] * v.x + p[2] * v.z, v.y, p[1] * v.x + p[3] * v.z};
+  }
+  if (gradient) gradient->setZero();
+  if (u[0].z <= 0.0 && u[1].z <= 0.0 && u[2].z <= 0.0 && u[3].z <= 0.0) return 0.0;
+  for (std::size_t i = 0; i < 4; ++i) length[i] = glm::length(u[i]);
+  const double determinant = Determinant(p);
+  double sum = 0.0;
+  glm::dvec3 leaves(0.0), enters(0.0);  // where the outline crosses the lobe's horizon
+  bool crosses = false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t next = (i + 1) % 4;
+    const double za = u[i].z, zb = u[next].z;
+    if (za <= 0.0 && zb <= 0.0) continue;
+    glm::dvec3 a = u[i], b = u[next];
+    double length_a = length[i], length_b = length[next];
+    if (za <= 0.0) {
+      a = {(zb * a.x - za * b.x), (zb * a.y - za * b.y), 0.0};
+      length_a = glm::length(a);
+      enters = a;
+      crosses = true;
+    } else if (zb <= 0.0) {
+      b = {(za * b.x - zb * a.x), (za * b.y - zb * a.y), 0.0};
+      length_b = glm::length(b);
+      leaves = b;
+      crosses = true;
+    }
+    // The plane's normal is the cofactor matrix of P times that before the transform; clipping keeps the
+    // plane.
+    const glm::dvec3& n0 = quad.normal[i];
+    const glm::dvec3 n(p[3] * n0.x - p[1] * n0.z, determinant * n0.y, p[0] * n0.z - p[2] * n0.x);
+    const double n_length = glm::length(n);
+    const double scale = 1.0 / (length_a * length_b);
+    const double cosine = glm::dot(a, b) * scale;
+    const double sine = glm::length(glm::cross(a, b)) * scale;
+    const double angle = std::atan2(sine, cosine);
+    if (!(n_length > 0.0)) continue;
+    sum += angle * n.z / n_length;
+    if (!gradient) continue;
+    // ∂/∂n of the integral = (1/π) ∫ along the arc of ω ω_z ds / |n|, with ω = â cos t + ê sin t.
+    const glm::dvec3 a_unit = a / length_a;
+    const glm::dvec3 e = glm::cross(n, a_unit) / n_length;
+    const double cc = 0.5 * (angle + sine * cosine), ss = 0.5 * (angle - sine * cosine),
+                 cs = 0.5 * sine * sine;
+    const glm::dvec3 g = ((a_unit.z * cc + e.z * cs) * a_unit + (a_unit.z * cs + e.z * ss) * e) /
+                         (glm::pi<double>() * n_length);
+    (*gradient)[0] += g.y * p[3] * n0.y + g.z * n0.z;
+    (*gradient)[1] += -g.x * n0.z - g.y * p[2] * n0.y;
+    (*gradient)[2] += -g.y * p[1] * n0.y - g.z * n0.x;
+    (*gradient)[3] += g.x * n0.x + g.y * p[0] * n0.y;
+  }
+  if (crosses)
+    sum += std::atan2(leaves.x * enters.y - leaves.y * enters.x, leaves.x * enters.x + leaves.y * enters.y);
+  return sum * (0.5 * glm::one_over_pi<double>());
+}
+
+double UpperQuadIntegral(const Terms& p, const Quad& quad) {
+  std::array<glm::dvec3, 6> polygon, clipped;  // a convex outline gains at most one corner per plane
+  std::size_t count = 4;
+  for (std::size_t i = 0; i < 4; ++i) polygon[i] = quad.corner[i];
+  const auto clip = [&] {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::dvec3& a = polygon[i];
+      const glm::dvec3& b = polygon[(i + 1) % count];
+      if (a.z > 0.0) clipped[kept++] = a;
+      if ((a.z > 0.0) != (b.z > 0.0)) {
+        const double t = a.z / (a.z - b.z);
+        clipped[kept++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0.0};
+      }
+    }
+    polygon = clipped;
+    count = kept;
+  };
+  clip();
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3 v = polygon[i];
+    polygon[i] = {p[0] * v.x + p[2] * v.z, v.y, p[1] * v.x + p[3] * v.z};
+  }
+  clip();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3& a = polygon[i];
+    const glm::dvec3& b = polygon[(i + 1) % count];
+    const glm::dvec3 n = glm::cross(a, b);
+    const double length = glm::length(n);
+    if (length > 0.0) sum += std::atan2(length, glm::dot(a, b)) * n.z / length;
+  }
+  return sum * (0.5 * glm::one_over_pi<double>());
+}
+
+std::vector<Quad> RandomRectangles(int count, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Quad> quads;
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 center = random.Direction(0.0);
+    const auto [a, b] = RandomHalfAxes(random, 0.1, 2.0);
+    quads.push_back(RectangleAround(center, a, b));
+  }
+  return quads;
+}
+
+std::vector<Quad> RandomLobeQuads(int count, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Quad> quads;
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 center = random.Direction(0.2);
+    const auto [a, b] = RandomHalfAxes(random, 0.1, 2.0);
+    quads.push_back(RectangleAround(center, a, b));
+  }
+  return quads;
+}
+
+}  // namespace arealab::fit
