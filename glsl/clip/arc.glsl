@@ -1,0 +1,102 @@
+// Exact horizon clipping of a rectangle without a branch (ours). Dual; after an "edge".
+//
+// In the light's plane, let both sides rise: A and B are the full sides with A_z, B_z ≥ 0 and c the highest corner, so
+// corners are c − A, c − B and, lowest, c − A − B. What is above the horizon is always the polygon
+//   v0 = c − k0 A − k1 B,  v1 = c − k1 B,  c,  v3 = c − k2 A,  v4 = c − k2 A − k3 B
+// with k0 and k1 the shares that are above of the two sides at the corner c − B, k2 and k3 of those at c − A; at most one of each pair is
+// cut, and what is wholly below vanishes by itself. The closing side v4 v0 lies in the horizon, where an edge adds ±θ/2π.
+struct HorizonShares {
+  float k0, k1, k2, k3;
+};
+
+// Heights over the horizon: of the highest corner, of the sides (both ≥ 0).
+HorizonShares CutAtHorizon(float top, float rise_a, float rise_b) {
+  // A level side is wholly above or wholly below: any positive number far below a height serves for its rise.
+  float inverse_a = 1.0 / max(rise_a, 1e-30);
+  float inverse_b = 1.0 / max(rise_b, 1e-30);
+  float end_b = top - rise_b;  // height of c − B
+  float end_a = top - rise_a;  // height of c − A
+  HorizonShares shares;
+  shares.k0 = clamp(end_b * inverse_a, 0.0, 1.0);
+  shares.k1 = clamp(end_b * inverse_b + 1.0, 0.0, 1.0);
+  shares.k2 = clamp(end_a * inverse_a + 1.0, 0.0, 1.0);
+  shares.k3 = clamp(end_a * inverse_b, 0.0, 1.0);
+  return shares;
+}
+
+// The sum of the edges: t0 … t3 the quotients θ/|cross| of the edges, closing = θ of the side in the horizon; the crosses'
+// third components c × A, c × B, A × B. Edges v0 v1, v1 c, c v3, v3 v4; along A: (c − k1 B) × A = c × A + k1 A × B.
+float SumEdges(HorizonShares k, float t0, float t1, float t2, float t3, float closing, float c_a, float c_b, float a_b,
+               float orientation) {
+  float sum = t0 * k.k0 * (c_a + k.k1 * a_b) + t1 * k.k1 * c_b - t2 * k.k2 * c_a - t3 * k.k3 * (c_b - k.k2 * a_b);
+  return AsFormFactor((orientation * sum + closing) * (0.5 / kPi));
+}
+
+// For a clamped cosine about +z, of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
+float ClippedFormFactor(vec3 center, vec3 half_a, vec3 half_b) {
+  float sign_a = half_a.z < 0.0 ? -2.0 : 2.0;
+  float sign_b = half_b.z < 0.0 ? -2.0 : 2.0;
+  vec3 a = half_a * sign_a;
+  vec3 b = half_b * sign_b;
+  vec3 c = center + 0.5 * (a + b);
+  HorizonShares k = CutAtHorizon(c.z, a.z, b.z);
+
+  vec3 v1 = c - k.k1 * b;
+  vec3 v0 = v1 - k.k0 * a;
+  vec3 v3 = c - k.k2 * a;
+  vec3 v4 = v3 - k.k3 * b;
+  float l0 = length(v0);
+  float l1 = length(v1);
+  float lc = length(c);
+  float l3 = length(v3);
+  float l4 = length(v4);
+  float t0 = EdgeRatio(dot(v0, v1), l0 * l1);
+  float t1 = EdgeRatio(dot(v1, c), l1 * lc);
+  float t2 = EdgeRatio(dot(c, v3), lc * l3);
+  float t3 = EdgeRatio(dot(v3, v4), l3 * l4);
+  float closing = EdgeAngle(dot(v4, v0), l4 * l0, abs(CrossZ(v4, v0)));
+  // Sides rising the same way keep half_a × half_b towards the origin: then the polygon runs clockwise.
+  float orientation = sign_a * sign_b * -0.25;
+  return SumEdges(k, t0, t1, t2, t3, closing, CrossZ(c, a), CrossZ(c, b), CrossZ(a, b), orientation);
+}
+
+// The same for the light itself: in its own axes its sides are parallel to the axes, which leaves few products.
+float ClippedLambert(RectangleView view) {
+  float sign_a = view.half_a.z < 0.0 ? -2.0 : 2.0;
+  float sign_b = view.half_b.z < 0.0 ? -2.0 : 2.0;
+  vec3 a = view.half_a * sign_a;
+  vec3 b = view.half_b * sign_b;
+  vec3 c = view.center + 0.5 * (a + b);
+  HorizonShares k = CutAtHorizon(c.z, a.z, b.z);
+
+  float side_x = view.half_size.x * sign_a;
+  float side_y = view.half_size.y * sign_b;
+  float x = view.in_plane.x + 0.5 * side_x;
+  float y = view.in_plane.y + 0.5 * side_y;
+  float x0 = x - k.k0 * side_x;
+  float y0 = y - k.k1 * side_y;
+  float x4 = x - k.k2 * side_x;
+  float y4 = y - k.k3 * side_y;
+  float z2 = view.in_plane.z * view.in_plane.z;
+  float row0 = y0 * y0 + z2;  // squared distance from the line of edge v0 v1
+  float row = y * y + z2;     // of c v3
+  float column = x * x + z2;  // of v1 c
+  float column4 = x4 * x4 + z2;
+  float l0 = sqrt(x0 * x0 + row0);
+  float l1 = sqrt(x * x + row0);
+  float lc = sqrt(x * x + row);
+  float l3 = sqrt(x4 * x4 + row);
+  float l4 = sqrt(y4 * y4 + column4);
+  float t0 = EdgeRatio(x0 * x + row0, l0 * l1);
+  float t1 = EdgeRatio(y0 * y + column, l1 * lc);
+  float t2 = EdgeRatio(x * x4 + row, lc * l3);
+  float t3 = EdgeRatio(y * y4 + column4, l3 * l4);
+
+  float c_a = CrossZ(c, a);
+  float c_b = CrossZ(c, b);
+  float a_b = CrossZ(a, b);
+  // v4 × v0 from the shares.
+  float area = abs((k.k2 - k.k0) * c_a + (k.k3 - k.k1) * c_b + (k.k1 * k.k2 - k.k0 * k.k3) * a_b);
+  float closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);
+  return SumEdges(k, t0, t1, t2, t3, closing, c_a, c_b, a_b, sign_a * sign_b * -0.25);
+}

@@ -1,0 +1,10 @@
+// Tables fitted on polygons, stored in the mirror frame; the view angles end at 89° (ours). Dual; after ltc.glsl.
+
+// The table's second coordinate, [0, 1], from n·v.
+float LtcViewPosition(float n_dot_v) { return ViewPositionTo89(n_dot_v); }
+
+// M⁻¹ from a texel.
+vec4 LtcUnpack(vec4 texel, float n_dot_v) { return FromMirrorFrame(texel, n_dot_v); }
+
+// The lobe's integral from the transformed and the light's own form factor; the terms are as in glsl/fit.h.
+float LtcLobe(float transformed, float, vec4) { return transformed; }

@@ -1,0 +1,54 @@
+#pragma once
+// Linearly transformed cosines [Heitz et al. 2016]: the frame, the look-up and the transform. Dual.
+//
+// A lobe of the BRDF × cosine is R · (the clamped cosine transformed by M); its integral over a polygon is R times the
+// form factor of the polygon transformed by M⁻¹. M⁻¹ = [p 0 q; 0 1 0; r 0 s] (rows), held as vec4(p, r, q, s), the tables' order.
+#include "polygon.glsl"
+
+struct ShadingFrame {
+  vec3 tangent;    // unit, on the viewer's side
+  vec3 bitangent;  // unit
+  vec3 normal;     // unit
+  float n_dot_v;   // at least kMinViewCosine
+};
+
+// cos 89.95°: the last row of the published tables.
+const float kMinViewCosine = 8e-4;
+
+// to_view: unit, above the surface.
+ShadingFrame MakeShadingFrame(vec3 normal, vec3 to_view) {
+  ShadingFrame frame;
+  float cosine = dot(normal, to_view);
+  vec3 tangent = to_view - normal * cosine;
+  float length2 = dot(tangent, tangent);
+  // Within 1e-4 rad of the normal the difference is rounding, and lobes are round: any tangent serves.
+  if (length2 < 1e-8) {
+    vec3 axis = abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    tangent = axis - normal * dot(normal, axis);
+    length2 = dot(tangent, tangent);
+  }
+  frame.tangent = tangent * inversesqrt(length2);
+  frame.bitangent = cross(normal, frame.tangent);
+  frame.normal = normal;
+  frame.n_dot_v = clamp(cosine, kMinViewCosine, 1.0);
+  return frame;
+}
+
+// Texture coordinates in a table of 64 × 64 nodes whose node i stands for i/63.
+vec2 TableCoordinates(float x, float y) { return vec2(x * (63.0 / 64.0) + 0.5 / 64.0, y * (63.0 / 64.0) + 0.5 / 64.0); }
+
+// For an axis of view angles that ends at 89°: √((1 − c)/(1 − cos 89°)), clamped to 1.
+float ViewPositionTo89(float n_dot_v) { return min(sqrt((1.0 - n_dot_v) * (1.0 / 0.98254759356)), 1.0); }
+
+// M⁻¹ from M⁻¹·R in the mirror frame, R turning the normal onto the mirrored view, by the pixel's own angle (ours). Sharp
+// lobes hardly move in that frame from one view angle to the next, and interpolation between them errs little.
+vec4 FromMirrorFrame(vec4 stored, float n_dot_v) {
+  float sine = sqrt(1.0 - n_dot_v * n_dot_v);
+  return stored * n_dot_v + vec4(-stored.z, -stored.w, stored.x, stored.y) * sine;
+}
+
+// M⁻¹ v.
+vec3 LtcTransform(vec4 m, vec3 v) { return vec3(m.x * v.x + m.z * v.z, v.y, m.y * v.x + m.w * v.z); }
+
+// terms: x = ∫ of the lobe with Fresnel 1, y = the same weighted by Schlick's (1 − h·v)⁵; F = F0 + (1 − F0)·weight.
+vec3 LtcReflectance(vec3 f0, vec4 terms) { return f0 * (terms.x - terms.y) + vec3(terms.y); }

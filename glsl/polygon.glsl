@@ -1,0 +1,37 @@
+#pragma once
+// A rectangle light as a shaded point sees it. Dual: also compiles as C++ (glsl/dual_begin.h).
+//
+// The form factor of a polygon for a clamped cosine about +z is F_z with the vector form factor [Lambert 1760; Baum et al. 1989]
+//   F = 1/(2π) Σ θ_i (v_i × v_{i+1}) / |v_i × v_{i+1}|,
+// θ_i the angle between successive corners. An option "edge" gives the quotient θ/|v_i × v_{i+1}|; a cross product along a
+// side of a parallelogram is linear in where the side lies, so few of them are ever formed.
+#include "surface.glsl"
+
+// In the shading frame (tangent, bitangent, normal) and in the light's own axes. The light faces the point:
+// half_a × half_b points to the origin's side.
+struct RectangleView {
+  vec3 center;     // m, shading frame, from the shaded point
+  vec3 half_a;     // m, shading frame
+  vec3 half_b;     // m, shading frame; perpendicular to half_a
+  vec3 in_plane;   // m, the centre along the light's axis_x, axis_y and normal
+  vec2 half_size;  // m, |half_a| and |half_b|
+};
+
+// position: m, world; the frame's three axes are unit and perpendicular.
+RectangleView ViewRectangle(Light light, vec3 position, vec3 tangent, vec3 bitangent, vec3 normal) {
+  vec3 to_center = light.center - position;
+  RectangleView view;
+  view.center = vec3(dot(tangent, to_center), dot(bitangent, to_center), dot(normal, to_center));
+  view.half_a = vec3(dot(tangent, light.half_axis_x), dot(bitangent, light.half_axis_x), dot(normal, light.half_axis_x));
+  view.half_b = vec3(dot(tangent, light.half_axis_y), dot(bitangent, light.half_axis_y), dot(normal, light.half_axis_y));
+  view.in_plane = vec3(dot(light.axis_x, to_center), dot(light.axis_y, to_center), dot(light.normal, to_center));
+  view.half_size = light.half_size;
+  return view;
+}
+
+// The third component of a × b.
+float CrossZ(vec3 a, vec3 b) { return a.x * b.y - a.y * b.x; }
+
+// A form factor lies in [0, 1]; rounding can leave that range, and a point on an edge of the light has no form factor
+// at all, where its float is anything. The comparison also turns NaN to 0.
+float AsFormFactor(float value) { return value > 0.0 ? min(value, 1.0) : 0.0; }

@@ -1,0 +1,62 @@
+// The unclipped vector form factor of a rectangle, F [Hill & Heitz 2016, "vector form factor"]. Dual; after an "edge".
+//
+// Around the corners (+,+), (−,+), (−,−), (+,−) of center ± a ± b, with t_i = θ/|cross| of the edges, the crosses along a side being linear,
+//   Σ t_i v_i × v_{i+1} = 2 [(t2 − t0) p × a + (t3 − t1) p × b + (t0 + t1 + t2 + t3) a × b],  p = center;
+// seen from the origin that runs clockwise, so F = −1/(2π) of it.
+struct VectorFormFactor {
+  float size;    // |F|, the form factor in F's own direction
+  float height;  // F_z
+};
+
+VectorFormFactor SumSides(vec3 center, vec3 half_a, vec3 half_b, float t0, float t1, float t2, float t3) {
+  vec3 f = cross((t2 - t0) * half_a + (t3 - t1) * half_b, center) - (t0 + t1 + t2 + t3) * cross(half_a, half_b);
+  VectorFormFactor result;
+  result.size = length(f) / kPi;
+  result.height = f.z / kPi;
+  return result;
+}
+
+// Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
+VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
+  vec3 sum = half_a + half_b;
+  vec3 difference = half_a - half_b;
+  vec3 v0 = center + sum;
+  vec3 v1 = center - difference;
+  vec3 v2 = center - sum;
+  vec3 v3 = center + difference;
+  float l0 = length(v0);
+  float l1 = length(v1);
+  float l2 = length(v2);
+  float l3 = length(v3);
+  return SumSides(center, half_a, half_b, EdgeRatio(dot(v0, v1), l0 * l1), EdgeRatio(dot(v1, v2), l1 * l2),
+                  EdgeRatio(dot(v2, v3), l2 * l3), EdgeRatio(dot(v3, v0), l3 * l0));
+}
+
+// The same for the light itself: in its own axes its sides are parallel to the axes, which leaves few products.
+VectorFormFactor LambertVector(RectangleView view) {
+  float x0 = view.in_plane.x + view.half_size.x;
+  float x1 = view.in_plane.x - view.half_size.x;
+  float y0 = view.in_plane.y + view.half_size.y;
+  float y1 = view.in_plane.y - view.half_size.y;
+  float z2 = view.in_plane.z * view.in_plane.z;
+  float row0 = y0 * y0 + z2;  // squared distance from the line of edge v0 v1
+  float row1 = y1 * y1 + z2;  // of v2 v3
+  float column0 = x0 * x0 + z2;  // of v3 v0
+  float column1 = x1 * x1 + z2;  // of v1 v2
+  float l0 = sqrt(x0 * x0 + row0);
+  float l1 = sqrt(x1 * x1 + row0);
+  float l2 = sqrt(x1 * x1 + row1);
+  float l3 = sqrt(x0 * x0 + row1);
+  float along_x = x0 * x1;
+  float along_y = y0 * y1;
+  return SumSides(view.center, view.half_a, view.half_b, EdgeRatio(along_x + row0, l0 * l1),
+                  EdgeRatio(along_y + column1, l1 * l2), EdgeRatio(along_x + row1, l2 * l3),
+                  EdgeRatio(along_y + column0, l3 * l0));
+}
+
+// Of the proxy sphere that has the same F, clipped at the horizon; ClippedSphere is the option "sphere".
+float ClippedProxy(VectorFormFactor f) {
+  float size = min(f.size, 1.0);
+  float elevation = clamp(f.height / max(f.size, 1e-30), -1.0, 1.0);
+  return AsFormFactor(ClippedSphere(size, elevation));
+}
