@@ -25,6 +25,7 @@ struct Light {
   vec2 half_size;     // m; disk and sphere: the radius, twice
   float area;         // m², of one side; sphere: πR², its cross-section
   vec3 radiance;      // W/(m² sr) or cd/m², linear sRGB
+  vec3 products;      // m²: half_size.x², half_size.y², 2 · half_size.x · half_size.y
 };
 
 // Reflected radiance towards the viewer, in the light's unit.

@@ -1,0 +1,66 @@
+// OpenGL objects that delete themselves. Every one keeps the table of functions of the context that it lives in; that
+// context must be current when it is made and when it ends.
+#pragma once
+
+#include <glad/gl.h>
+
+#include <glm/glm.hpp>
+#include <utility>
+
+namespace arealab {
+
+class GlObject {
+ public:
+  using Delete = void (*)(const GladGLContext& gl, GLuint id);
+
+  GlObject() = default;
+  GlObject(const GladGLContext& gl, GLuint id, Delete del) : gl_(&gl), id_(id), delete_(del) {}
+  GlObject(GlObject&& other) noexcept
+      : gl_(other.gl_), id_(std::exchange(other.id_, 0)), delete_(other.delete_) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(gl_, other.gl_);
+    std::swap(id_, other.id_);
+    std::swap(delete_, other.delete_);
+    return *this;
+  }
+  ~GlObject() {
+    if (id_ != 0) delete_(*gl_, id_);
+  }
+
+  GLuint id() const { return id_; }
+
+ private:
+  const GladGLContext* gl_ = nullptr;
+  GLuint id_ = 0;
+  Delete delete_ = nullptr;
+};
+
+inline GlObject MakeTexture(const GladGLContext& gl, GLenum internal_format, int levels, glm::ivec2 size) {
+  GLuint id = 0;
+  gl.CreateTextures(GL_TEXTURE_2D, 1, &id);
+  GlObject texture(gl, id, [](const GladGLContext& table, GLuint name) { table.DeleteTextures(1, &name); });
+  gl.TextureStorage2D(id, levels, internal_format, size.x, size.y);
+  return texture;
+}
+
+inline GlObject MakeBuffer(const GladGLContext& gl, std::size_t bytes, const void* data) {
+  GLuint id = 0;
+  gl.CreateBuffers(1, &id);
+  GlObject buffer(gl, id, [](const GladGLContext& table, GLuint name) { table.DeleteBuffers(1, &name); });
+  gl.NamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), data, data == nullptr ? GL_DYNAMIC_STORAGE_BIT : 0);
+  return buffer;
+}
+
+inline GlObject MakeFramebuffer(const GladGLContext& gl) {
+  GLuint id = 0;
+  gl.CreateFramebuffers(1, &id);
+  return {gl, id, [](const GladGLContext& table, GLuint name) { table.DeleteFramebuffers(1, &name); }};
+}
+
+inline GlObject MakeVertexArray(const GladGLContext& gl) {
+  GLuint id = 0;
+  gl.CreateVertexArrays(1, &id);
+  return {gl, id, [](const GladGLContext& table, GLuint name) { table.DeleteVertexArrays(1, &name); }};
+}
+
+}  // namespace arealab

@@ -1,0 +1,27 @@
+// The lights of a scene as the shader gets them: computed once per light, in double, then rounded.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace arealab {
+
+// As in glsl/platform_inputs.glsl; together 32 KiB, which every driver of a GPU has for a uniform block.
+constexpr int kMaxLights = 256;
+constexpr int kLightRows = 8;
+
+// The lights that emit anything, in the scene's order: all that a technique ever sees.
+std::vector<Light> EmittingLights(const Scene& scene);
+
+// kLightRows rows per light, as glsl/lights.glsl reads them:
+//   0 centre (m, world), shape (0 rectangle, 1 disk, 2 sphere)   4 half axis A = axis_x · half_size.x (m), area (m²)
+//   1 normal, 1 if two-sided                                      5 half axis B = axis_y · half_size.y (m), 0
+//   2 axis_x, half_size.x (m)                                     6 radiance, 0
+//   3 axis_y, half_size.y (m)                                     7 half_size.x², half_size.y², 2 · x · y (m²), 0
+// The area is one side's; of a sphere its cross-section πR².
+// Throws InputError where there are more than kMaxLights.
+std::vector<glm::vec4> LightBlockRows(const std::vector<Light>& lights);
+
+}  // namespace arealab

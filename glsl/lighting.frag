@@ -1,0 +1,46 @@
+// The lighting pass: one technique over the G-buffer, diffuse and specular radiance to two targets.
+#include "surface.glsl"
+#include "platform"
+#include "lights.glsl"
+#include "technique"
+
+void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
+  Light light = LoadLight(i);
+  if (!FaceLight(light, surface.position)) return;
+  Radiance radiance = ShadeLight(surface, light, to_view);
+  // What is not added here is dead code, and the compiler drops it from the technique.
+#if EFFECT_DIFFUSE
+  diffuse += radiance.diffuse;
+#endif
+#if EFFECT_SPECULAR
+  specular += radiance.specular;
+#endif
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec3 diffuse = vec3(0.0);
+  vec3 specular = vec3(0.0);
+  vec4 position = FetchPosition(pixel);
+  if (position.w == 1.0) {
+    vec4 normal = FetchNormal(pixel);
+    vec4 base_color = FetchBaseColor(pixel);
+    vec3 to_view = normalize(ViewPosition() - position.xyz);
+    // A face turned away from the viewer is black.
+    if (dot(normal.xyz, to_view) > 0.0) {
+      Surface surface;
+      surface.position = position.xyz;
+      surface.normal = normal.xyz;
+      surface.roughness = normal.w;
+      surface.alpha = max(normal.w * normal.w, kMinAlpha);
+      surface.diffuse_albedo = base_color.rgb * (1.0 - base_color.w);
+      surface.f0 = mix(vec3(0.04), base_color.rgb, base_color.w);
+#if EFFECT_MANY_LIGHTS
+      for (int i = 0; i < light_count; ++i) AddLight(i, surface, to_view, diffuse, specular);
+#else
+      AddLight(0, surface, to_view, diffuse, specular);
+#endif
+    }
+  }
+  WriteRadiance(diffuse, specular);
+}

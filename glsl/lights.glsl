@@ -1,0 +1,59 @@
+#pragma once
+// The light block's rows made into the Light that techniques see.
+#include "surface.glsl"
+#include "platform"
+
+Light LoadLight(int i) {
+  vec4 row0 = LightRow(i, 0);
+  vec4 row1 = LightRow(i, 1);
+  vec4 row2 = LightRow(i, 2);
+  vec4 row3 = LightRow(i, 3);
+  vec4 row4 = LightRow(i, 4);
+  Light light;
+  // Where the scene has one shape only it is a constant, and branches on it vanish.
+#if EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_SPHERE
+  light.shape = SHAPE_RECTANGLE;
+#elif EFFECT_DISK && !EFFECT_RECTANGLE && !EFFECT_SPHERE
+  light.shape = SHAPE_DISK;
+#elif EFFECT_SPHERE && !EFFECT_RECTANGLE && !EFFECT_DISK
+  light.shape = SHAPE_SPHERE;
+#else
+  light.shape = int(row0.w);
+#endif
+#if EFFECT_TWO_SIDED
+  light.two_sided = row1.w != 0.0;
+#else
+  light.two_sided = false;
+#endif
+  light.center = row0.xyz;
+  light.normal = row1.xyz;
+  light.axis_x = row2.xyz;
+  light.axis_y = row3.xyz;
+  light.half_size = vec2(row2.w, row3.w);
+  light.half_axis_x = row4.xyz;
+  light.area = row4.w;
+  light.half_axis_y = LightRow(i, 5).xyz;
+  light.radiance = LightRow(i, 6).xyz;
+  light.products = LightRow(i, 7).xyz;
+  return light;
+}
+
+// Turns a two-sided light's frame so that its lit side faces the point, right-handed as before. False where no lit side
+// does: the point is in the plane or behind it. A sphere faces everything.
+bool FaceLight(inout Light light, vec3 position) {
+#if EFFECT_RECTANGLE || EFFECT_DISK
+  if (light.shape != SHAPE_SPHERE) {
+    float height = dot(light.normal, position - light.center);
+#if EFFECT_TWO_SIDED
+    if (light.two_sided && height < 0.0) {
+      light.normal = -light.normal;
+      light.axis_x = -light.axis_x;
+      light.half_axis_x = -light.half_axis_x;
+      height = -height;
+    }
+#endif
+    return height > 0.0;
+  }
+#endif
+  return true;
+}

@@ -1,0 +1,27 @@
+#pragma once
+// How the shading text reads and writes when it computes in double: the inputs are the very floats that the float form
+// gets. Not rewritten by the expander.
+#include "platform_inputs.glsl"
+
+dvec4 FetchPosition(ivec2 pixel) { return dvec4(texelFetch(gbuffer_position, pixel, 0)); }
+dvec4 FetchNormal(ivec2 pixel) { return dvec4(texelFetch(gbuffer_normal, pixel, 0)); }
+dvec4 FetchBaseColor(ivec2 pixel) { return dvec4(texelFetch(gbuffer_base_color, pixel, 0)); }
+dvec3 ViewPosition() { return dvec3(view_position); }
+dvec4 LightRow(int light, int row) { return dvec4(light_rows[light * LIGHT_ROWS + row]); }
+
+// Bilinear, clamped to the edge; texel (i, j)'s centre is uv = (i + ½, j + ½) / size. By hand: samplers weigh in float.
+dvec4 SampleTable(sampler2D table, dvec2 uv) {
+  ivec2 last = textureSize(table, 0) - 1;
+  dvec2 p = clamp(uv * dvec2(last + 1) - 0.5lf, dvec2(0.0lf), dvec2(last));
+  ivec2 low = clamp(ivec2(p), ivec2(0), last);
+  ivec2 high = min(low + 1, last);
+  dvec2 f = p - dvec2(low);
+  dvec4 row_low = mix(dvec4(texelFetch(table, low, 0)), dvec4(texelFetch(table, ivec2(high.x, low.y), 0)), f.x);
+  dvec4 row_high = mix(dvec4(texelFetch(table, ivec2(low.x, high.y), 0)), dvec4(texelFetch(table, high, 0)), f.x);
+  return mix(row_low, row_high, f.y);
+}
+
+void WriteRadiance(dvec3 diffuse, dvec3 specular) {
+  out_diffuse = vec4(vec3(diffuse), 1.0);
+  out_specular = vec4(vec3(specular), 1.0);
+}

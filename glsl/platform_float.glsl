@@ -1,0 +1,17 @@
+#pragma once
+// How the shading text reads and writes when it computes in float. Not rewritten by the expander.
+#include "platform_inputs.glsl"
+
+vec4 FetchPosition(ivec2 pixel) { return texelFetch(gbuffer_position, pixel, 0); }
+vec4 FetchNormal(ivec2 pixel) { return texelFetch(gbuffer_normal, pixel, 0); }
+vec4 FetchBaseColor(ivec2 pixel) { return texelFetch(gbuffer_base_color, pixel, 0); }
+vec3 ViewPosition() { return view_position; }
+vec4 LightRow(int light, int row) { return light_rows[light * LIGHT_ROWS + row]; }
+
+// Bilinear, clamped to the edge; texel (i, j)'s centre is uv = (i + ½, j + ½) / size.
+vec4 SampleTable(sampler2D table, vec2 uv) { return textureLod(table, uv, 0.0); }
+
+void WriteRadiance(vec3 diffuse, vec3 specular) {
+  out_diffuse = vec4(diffuse, 1.0);
+  out_specular = vec4(specular, 1.0);
+}

@@ -1,0 +1,18 @@
+#pragma once
+// What the host binds, the same in both precisions: floats in, floats out. Set by glsl/renderer.cpp.
+
+layout(binding = 0) uniform sampler2D gbuffer_position;    // m, world; w: 0 background, 1 surface, else an emitter
+layout(binding = 1) uniform sampler2D gbuffer_normal;      // unit; w: artist's roughness
+layout(binding = 2) uniform sampler2D gbuffer_base_color;  // linear sRGB; w: metalness
+
+#define MAX_LIGHTS 256
+#define LIGHT_ROWS 8
+layout(std140, binding = 0) uniform LightBlock {
+  vec4 light_rows[MAX_LIGHTS * LIGHT_ROWS];  // what each row holds: glsl/light_block.h
+};
+
+uniform vec3 view_position;  // m, world
+uniform int light_count;
+
+layout(location = 0) out vec4 out_diffuse;
+layout(location = 1) out vec4 out_specular;

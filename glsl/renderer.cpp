@@ -1,0 +1,230 @@
+#include "glsl/renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "glsl/gbuffer.h"
+#include "glsl/gl_objects.h"
+#include "glsl/light_block.h"
+#include "glsl/program.h"
+#include "glsl/table.h"
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+constexpr GLuint kFirstTableUnit = 3;  // after the G-buffer's three, see glsl/platform_inputs.glsl
+
+}  // namespace
+
+struct Renderer::Impl {
+  Impl(const GladGLContext& context, const ShaderLibrary& files)
+      : gl(context),
+        library(files),
+        gbuffer(gl, library),
+        vertex_array(MakeVertexArray(gl)),
+        lights(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kLightRows, nullptr)),
+        fullscreen(Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat)) {}
+
+  // A technique's table, decoded and uploaded again only where its bytes have changed.
+  struct Table {
+    std::string bytes;
+    GlObject texture;
+  };
+  // A variant ready to draw.
+  struct Pass {
+    const Program* program = nullptr;
+    std::vector<GLuint> tables;
+  };
+
+  void Allocate(glm::ivec2 size);
+  Pass MakePass(const Variant& variant, Precision precision);
+  GLuint LoadTable(const Variant& variant, const arealab::Table& table);
+  void SetKnobs(const Pass& pass, const Variant& variant, const std::map<std::string, double>& knobs) const;
+  void DrawPass(const Pass& pass) const;
+  void Black() const;
+  std::vector<glm::vec3> ReadBack(const GlObject& texture) const;
+
+  const GladGLContext& gl;
+  const ShaderLibrary& library;
+  GBuffer gbuffer;
+  GlObject vertex_array;  // empty: core contexts draw with one only
+  GlObject lights;
+  ExpandedSource fullscreen;
+
+  glm::ivec2 size{0};
+  int light_count = 0;
+  std::vector<std::pair<std::string, int>> effects;
+  GlObject framebuffer, diffuse, specular;
+  std::unordered_map<std::string, std::unique_ptr<Program>> programs;  // by their whole text
+  std::map<std::string, Table> tables;                                 // by their name in the library
+  std::map<std::pair<std::string, Precision>, Pass> passes;            // of this scene, by the variant's name
+};
+
+void Renderer::Impl::Allocate(glm::ivec2 new_size) {
+  if (size == new_size) return;
+  size = glm::ivec2(0);
+  framebuffer = MakeFramebuffer(gl);
+  diffuse = MakeTexture(gl, GL_RGBA32F, 1, new_size);
+  specular = MakeTexture(gl, GL_RGBA32F, 1, new_size);
+  gl.NamedFramebufferTexture(framebuffer.id(), GL_COLOR_ATTACHMENT0, diffuse.id(), 0);
+  gl.NamedFramebufferTexture(framebuffer.id(), GL_COLOR_ATTACHMENT1, specular.id(), 0);
+  const std::array<GLenum, 2> targets{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  gl.NamedFramebufferDrawBuffers(framebuffer.id(), static_cast<GLsizei>(targets.size()), targets.data());
+  if (gl.GetError() == GL_OUT_OF_MEMORY ||
+      gl.CheckNamedFramebufferStatus(framebuffer.id(), GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw InputError(
+        fmt::format("a picture of {}x{} pixels does not fit; expected a smaller one", new_size.x, new_size.y));
+  }
+  size = new_size;
+}
+
+GLuint Renderer::Impl::LoadTable(const Variant& variant, const arealab::Table& table) {
+  std::string file = table.file;
+  for (const auto& [option, choice] : variant.options) {
+    const std::string placeholder = "{" + option + "}";
+    for (auto at = file.find(placeholder); at != std::string::npos; at = file.find(placeholder)) {
+      file.replace(at, placeholder.size(), choice);
+    }
+  }
+  const std::string name = "tables/" + file;
+  std::optional<std::string> bytes = library.Find(name);
+  if (!bytes) {
+    throw InputError(fmt::format("{}:1: table_{} is {}, which does not exist; expected a file that `arealab fit` wrote",
+                                 library.DisplayPath("techniques/" + variant.technique->name + ".glsl"), table.name,
+                                 library.DisplayPath(name)));
+  }
+  Table& entry = tables[name];
+  if (entry.texture.id() == 0 || entry.bytes != *bytes) {
+    entry.texture = UploadTable(gl, DecodeTable(*bytes, library.DisplayPath(name)));
+    entry.bytes = std::move(*bytes);
+    passes.clear();  // they may name the texture that this one replaces
+  }
+  return entry.texture.id();
+}
+
+Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision precision) {
+  const ExpandedSource source = Expand(library, "lighting.frag", variant, effects, precision);
+  std::unique_ptr<Program>& program = programs[source.text];
+  if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
+  Pass pass{program.get(), {}};
+  GLuint unit = kFirstTableUnit;
+  for (const arealab::Table& table : variant.technique->tables) {
+    program->Set("table_" + table.name, static_cast<int>(unit++));
+    pass.tables.push_back(LoadTable(variant, table));
+  }
+  return pass;
+}
+
+void Renderer::Impl::SetKnobs(const Pass& pass, const Variant& variant,
+                              const std::map<std::string, double>& knobs) const {
+  const auto& known = variant.technique->knobs;
+  for (const auto& [name, value] : knobs) {
+    if (std::none_of(known.begin(), known.end(), [&](const Knob& knob) { return knob.name == name; })) {
+      std::string names;
+      for (const Knob& knob : known) names += (names.empty() ? "" : ", ") + knob.name;
+      throw InputError(fmt::format("{} has no knob {}; expected {}", variant.technique->name, name,
+                                   names.empty() ? "none" : "one of " + names));
+    }
+  }
+  for (const Knob& knob : known) {
+    const auto set = knobs.find(knob.name);
+    pass.program->Set("knob_" + knob.name, static_cast<float>(set == knobs.end() ? knob.initial : set->second));
+  }
+}
+
+void Renderer::Impl::Black() const {
+  const std::array<float, 4> black{};
+  for (GLint i = 0; i < 2; ++i) gl.ClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, i, black.data());
+}
+
+void Renderer::Impl::DrawPass(const Pass& pass) const {
+  pass.program->Set("view_position", gbuffer.pixels().view_position);
+  pass.program->Set("light_count", light_count);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  gl.Viewport(0, 0, size.x, size.y);
+  for (const GLenum capability : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_DEPTH_TEST}) {
+    gl.Disable(capability);
+  }
+  gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl.UseProgram(pass.program->id());
+  gl.BindVertexArray(vertex_array.id());
+  gl.BindTextureUnit(0, gbuffer.position());
+  gl.BindTextureUnit(1, gbuffer.normal());
+  gl.BindTextureUnit(2, gbuffer.base_color());
+  for (std::size_t i = 0; i < pass.tables.size(); ++i) {
+    gl.BindTextureUnit(kFirstTableUnit + static_cast<GLuint>(i), pass.tables[i]);
+  }
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, lights.id());
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.BindVertexArray(0);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+std::vector<glm::vec3> Renderer::Impl::ReadBack(const GlObject& texture) const {
+  const auto width = static_cast<std::size_t>(size.x);
+  std::vector<glm::vec3> image(width * static_cast<std::size_t>(size.y));
+  // RGBA is what drivers copy without thinking; a band at a time keeps the detour small.
+  const int band = std::max(1, (1 << 20) / size.x);
+  std::vector<glm::vec4> texels(width * static_cast<std::size_t>(std::min(band, size.y)));
+  for (int y = 0; y < size.y; y += band) {
+    const int rows = std::min(band, size.y - y);
+    gl.GetTextureSubImage(texture.id(), 0, 0, y, 0, size.x, rows, 1, GL_RGBA, GL_FLOAT,
+                          static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
+    const std::size_t count = width * static_cast<std::size_t>(rows);
+    const std::size_t first = width * static_cast<std::size_t>(y);
+    for (std::size_t i = 0; i < count; ++i) image[first + i] = glm::vec3(texels[i]);
+  }
+  return image;
+}
+
+Renderer::Renderer(const GladGLContext& gl, const ShaderLibrary& library)
+    : impl_(std::make_unique<Impl>(gl, library)) {}
+
+Renderer::~Renderer() = default;
+
+const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size) {
+  const std::vector<Light> lights = EmittingLights(scene);
+  const std::vector<glm::vec4> rows = LightBlockRows(lights);
+  impl_->gbuffer.Draw(scene, size);
+  impl_->Allocate(size);
+  impl_->light_count = static_cast<int>(lights.size());
+  impl_->effects = SceneEffects(scene);
+  impl_->passes.clear();
+  impl_->gl.NamedBufferSubData(impl_->lights.id(), 0, static_cast<GLsizeiptr>(rows.size() * sizeof(glm::vec4)),
+                               rows.data());
+  return impl_->gbuffer.pixels();
+}
+
+RadianceImage Renderer::Shade(const Variant& variant, Precision precision,
+                              const std::map<std::string, double>& knobs) {
+  if (impl_->light_count == 0) {
+    impl_->Black();
+  } else {
+    Impl::Pass pass = impl_->MakePass(variant, precision);
+    impl_->SetKnobs(pass, variant, knobs);
+    impl_->DrawPass(pass);
+    impl_->passes[{variant.Name(), precision}] = std::move(pass);
+  }
+  return {impl_->size.x, impl_->size.y, impl_->ReadBack(impl_->diffuse), impl_->ReadBack(impl_->specular)};
+}
+
+void Renderer::Draw(const Variant& variant, Precision precision, const std::map<std::string, double>& knobs) {
+  if (impl_->light_count == 0) {
+    impl_->Black();
+  } else {
+    Impl::Pass& pass = impl_->passes[{variant.Name(), precision}];
+    if (pass.program == nullptr) pass = impl_->MakePass(variant, precision);
+    impl_->SetKnobs(pass, variant, knobs);
+    impl_->DrawPass(pass);
+  }
+  impl_->gl.Finish();
+}
+
+}  // namespace arealab

@@ -1,0 +1,42 @@
+/*---
+summary = "A point at the light's centre with the light's intensity towards the surface: the baseline"
+citation = "far-field limit of an area light; intensity and its cosine as in Drobot 2014, eq. 1.16"
+author_note = "published and default form are the same: there is one"
+shapes = ["rectangle", "disk", "sphere"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["two_sided", "fresnel", "many_lights"]
+exact = ["point_limit"]
+---*/
+#include "surface.glsl"
+#include "brdf.glsl"
+
+// m²: below it no float position tells the centre from the point; there the direction is 0 and so is the radiance.
+const float kMinDistance2 = 1e-20;
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  Radiance radiance = Radiance(vec3(0.0), vec3(0.0));
+  vec3 to_center = light.center - surface.position;
+  float distance2 = max(dot(to_center, to_center), kMinDistance2);
+  vec3 to_light = to_center * inversesqrt(distance2);
+  float n_dot_l = dot(surface.normal, to_light);
+  if (n_dot_l <= 0.0) return radiance;
+
+  // Intensity L·A·cosθ_l, W/sr; area is a sphere's cross-section and a sphere has no cosine.
+  float cos_light = light.shape == SHAPE_SPHERE ? 1.0 : max(-dot(light.normal, to_light), 0.0);
+  vec3 irradiance = light.radiance * (light.area * cos_light * n_dot_l / distance2);
+
+  radiance.diffuse = surface.diffuse_albedo * irradiance / kPi;
+
+  vec3 halfway = normalize(to_light + to_view);
+  float n_dot_v = dot(surface.normal, to_view);
+  float n_dot_h = min(dot(surface.normal, halfway), 1.0);
+#if EFFECT_FRESNEL
+  vec3 fresnel = mix(surface.f0, vec3(1.0), SchlickWeight(dot(to_view, halfway)));
+#else
+  vec3 fresnel = surface.f0;
+#endif
+  float brdf = GgxDensity(n_dot_h, surface.alpha) * SmithVisibility(n_dot_v, n_dot_l, surface.alpha);
+  radiance.specular = fresnel * brdf * irradiance;
+  return radiance;
+}
