@@ -232,13 +232,13 @@ class Fields {
   std::string title_;
 };
 
-// Waves of 7 lengths and directions, each half as high as it is long against its forerunner: a ground that is
+// Waves of 7 lengths and directions, each shorter and flatter than the one before: a ground that is
 // smooth everywhere and repeats nowhere in sight.
 glm::dvec3 Dunes(double x, double y, double wavelength, double amplitude) {
   constexpr double kGoldenAngle = 2.399963229728653;  // rad, π(3 − √5): successive directions never align
   glm::dvec3 result(0.0);
   double frequency = glm::two_pi<double>() / wavelength;
-  double height = 0.5 * amplitude;  // halved each time, the sum stays below amplitude
+  double height = 0.61803398874989 * amplitude;  // 1 - 1/golden²: the series sums to the amplitude
   for (int i = 0; i < 7; ++i) {
     const double cx = std::cos(kGoldenAngle * i);
     const double cy = std::sin(kGoldenAngle * i);
@@ -246,7 +246,7 @@ glm::dvec3 Dunes(double x, double y, double wavelength, double amplitude) {
     const double slope = height * frequency * std::cos(phase);
     result += glm::dvec3(height * std::sin(phase), slope * cx, slope * cy);
     frequency *= 1.61803398874989;  // golden ratio: incommensurable
-    height *= 0.5;
+    height *= 0.38196601125011;  // its inverse square: slopes fall off too
   }
   return result;
 }
