@@ -4,8 +4,10 @@
 #include <array>
 #include <mutex>
 
-#include "glsl/brdf.glsl"
 #include "glsl/dual_begin.h"
+
+#include "glsl/brdf.glsl"
+
 #include "glsl/dual_end.h"
 
 namespace arealab::fit {
@@ -127,6 +129,32 @@ LobeMoments Moments(const Nodes& upper) {
     z += share * upper.z[i];
   }
   moments.mean = glm::normalize(glm::dvec3(x, 0.0, z));
+  return moments;
+}
+
+LobeMoments SampledMoments(const View& view, int count) {
+  LobeMoments moments;
+  glm::dvec3 sum(0.0);
+  const glm::dvec3 to_view = view.ToView();
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) {
+      const double phi = glm::two_pi<double>() * (i + 0.5) / count, u = (j + 0.5) / count;
+      const double tan_h = view.alpha * std::sqrt(u / (1.0 - u));
+      const glm::dvec3 half = glm::normalize(glm::dvec3(tan_h * std::cos(phi), tan_h * std::sin(phi), 1.0));
+      const double v_dot_h = glm::dot(to_view, half);
+      const glm::dvec3 to_light = 2.0 * v_dot_h * half - to_view;
+      if (to_light.z <= 0.0) continue;
+      // ρ over the samples' density D h·n/(4 |v·h|).
+      const double share =
+          dual::SmithVisibility(view.cosine, to_light.z, view.alpha) * to_light.z * 4.0 * std::abs(v_dot_h) / half.z;
+      moments.albedo += share;
+      moments.schlick += share * dual::SchlickWeight(v_dot_h);
+      sum += share * to_light;
+    }
+  }
+  moments.albedo /= count * count;
+  moments.schlick /= count * count;
+  moments.mean = glm::normalize(glm::dvec3(sum.x, 0.0, sum.z));
   return moments;
 }
 
