@@ -3,8 +3,8 @@
 // A corner as the edges want it: direction and length.
 vec4 EdgeVertex(vec3 v) { return vec4(v, length(v)); }
 
-// θ itself; the third is |v0 × v1|, not needed here.
-float EdgeAngle(float d, float m, float) { return acos(clamp(d / max(m, 1e-30), -1.0, 1.0)); }
+// θ itself; `area` = |v0 × v1| is not needed here.
+float EdgeAngle(float d, float m, float area) { return acos(clamp(d / max(m, 1e-30), -1.0, 1.0)); }
 
 // θ/|v0 × v1|, 1/m², of the angle θ between v0 and v1 from d = v0·v1 and m = |v0||v1|.
 float EdgeRatio(float d, float m) {

@@ -5,7 +5,7 @@
 float LtcViewPosition(float n_dot_v) { return sqrt(1.0 - n_dot_v); }
 
 // M⁻¹ from a texel.
-vec4 LtcUnpack(vec4 texel, float) { return texel; }
+vec4 LtcUnpack(vec4 texel, float n_dot_v) { return texel; }
 
 // The lobe's integral from the transformed and the light's own form factor; the terms are as in glsl/fit.h.
-float LtcLobe(float transformed, float, vec4) { return transformed; }
+float LtcLobe(float transformed, float form_factor, vec4 terms) { return transformed; }

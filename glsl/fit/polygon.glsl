@@ -7,4 +7,4 @@ float LtcViewPosition(float n_dot_v) { return ViewPositionTo89(n_dot_v); }
 vec4 LtcUnpack(vec4 texel, float n_dot_v) { return FromMirrorFrame(texel, n_dot_v); }
 
 // The lobe's integral from the transformed and the light's own form factor; the terms are as in glsl/fit.h.
-float LtcLobe(float transformed, float, vec4) { return transformed; }
+float LtcLobe(float transformed, float form_factor, vec4 terms) { return transformed; }
