@@ -1,0 +1,102 @@
+#pragma once
+// The cone of directions about the mirror direction that matter for a GGX lobe [Drobot 2014, §1.3.4], and its footprint
+// on a light. Dual: also compiles as C++. A cone is held by its versine (spherical_cap.glsl).
+//
+// With half vectors at θ_h from the normal, D(θ_h)/D(0) = σ gives sin²θ_h = (σ^−½ − 1) α²/(1 − α²); the light's direction
+// turns twice as far, and the versine of 2θ_h is 2 sin²θ_h.
+#include "brdf.glsl"
+#include "spherical_cap.glsl"
+
+// The threshold that makes Phong's cone of eq. 1.18 (half angle √(2/(g + 2))) is σ = 1/e; √e − 1 = 0.6487.
+float ThresholdConeVersine(float alpha) {
+  float alpha2 = alpha * alpha;
+  return min(2.0 * 0.6487212707 * alpha2 / max(1.0 - alpha2, 1e-6), 2.0);
+}
+
+// GgxDensity of the angle between two unit vectors, from their cross product: in float the cosine alone cannot resolve
+// the peak of a lobe with alpha below 1e-3.
+float GgxDensityBetween(vec3 normal, vec3 half_vector, float alpha) {
+  vec3 c = cross(normal, half_vector);
+  float sin2 = min(dot(c, c), 1.0);
+  float k = alpha / (sin2 + (1.0 - sin2) * alpha * alpha);
+  return k * k / kPi;
+}
+
+// The specular lobe with its cosine towards the light, F·D·G2/(4 n·v), 1/sr, per channel; 0 below the horizon.
+vec3 SpecularLobe(Surface surface, vec3 to_view, vec3 to_light) {
+  float n_dot_l = dot(surface.normal, to_light);
+  float n_dot_v = max(dot(surface.normal, to_view), 1e-6);
+  vec3 sum = to_view + to_light;
+  vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-20));
+  float density = GgxDensityBetween(surface.normal, half_vector, surface.alpha);
+  float lobe = density * SmithVisibility(n_dot_v, max(n_dot_l, 1e-6), surface.alpha) * max(n_dot_l, 0.0);
+#if EFFECT_FRESNEL
+  return (surface.f0 + (vec3(1.0) - surface.f0) * SchlickWeight(dot(to_view, half_vector))) * lobe;
+#else
+  return surface.f0 * lobe;
+#endif
+}
+
+// Ours: the versine that conserves energy. The lobe fills 4 n·v dω_h, so a cone in which it is as high as at the mirror
+// direction has the solid angle 4π α² n·v; its product with the peak D(0)·G2/(4 n·v) is G2, what a mirror tends to.
+// At n·v = 1 and small alpha this is the threshold σ = ¼.
+float EnergyConeVersine(float alpha, float n_dot_v) { return min(2.0 * alpha * alpha * n_dot_v, 2.0); }
+
+// The cone's trace on the light's plane, taken as a disk [Drobot 2014, §1.3.4].
+struct Footprint {
+  vec2 center;   // m, in the light's plane
+  float radius;  // m; 0 where the cone misses the plane
+};
+
+// The axis' cosine to the light's plane is held above this: a hit then stays within 100 heights, far outside every light
+// that a footprint could resolve there.
+const float kMinConeCosine = 0.01;
+
+// `point` and the unit `mirror` direction in the light's frame (centre at the origin, z along the lit normal, m; point.z > 0).
+// The radius is distance · tan(half angle), Drobot's, or with keep_solid_angle that of the disk which subtends the
+// cone's own solid angle, ours. He is silent where the axis runs away from the plane. Ours: the axis is tilted up to the
+// plane and the half angle loses what was tilted, so the footprint is continuous and gone where the whole cone misses.
+Footprint ConeFootprint(vec3 point, vec3 mirror, float cone_versine, bool keep_solid_angle) {
+  float cosine = max(-mirror.z, kMinConeCosine);
+  float along = sqrt(mirror.x * mirror.x + mirror.y * mirror.y);
+  float reach = point.z / cosine;
+  float tilt = mirror.z > 0.0 ? atan(mirror.z, along) : 0.0;
+  float half_angle = max(AngleFromVersine(cone_versine) - tilt, 0.0);
+  Footprint footprint;
+  footprint.center = vec2(point.x, point.y) +
+                     vec2(mirror.x, mirror.y) * (mirror.z > 0.0 ? reach / max(along, 1e-3) : reach);
+  if (keep_solid_angle) {
+    float sine = sin(0.5 * half_angle);
+    footprint.radius = reach * sine * 2.0 * inversesqrt(cosine);  // π radius² cosine / reach² = 4π sin²(half angle / 2)
+  } else {
+    footprint.radius = reach * tan(min(half_angle, 1.56));  // 89.4°: a wider cone covers the half space
+  }
+  return footprint;
+}
+
+// The part of a light that a footprint covers.
+struct LitPart {
+  vec2 center;  // m, in the light's plane, on the light where the area is not 0
+  float area;   // m²
+};
+
+// [Drobot 2014, eqs. 1.21 and 1.22]
+LitPart FootprintOnDisk(Footprint footprint, float radius) {
+  float center_distance = length(footprint.center);
+  float smaller = min(footprint.radius, radius);
+  LitPart part;
+  part.center = footprint.center * OverlapCenter(radius, footprint.radius, center_distance);
+  part.area = kPi * smaller * smaller * SmoothstepOverlap(radius, footprint.radius, center_distance);
+  return part;
+}
+
+// [Drobot 2014, eq. 1.23, with the signs of its extent corrected]: the footprint as the square of equal area.
+LitPart FootprintOnRectangle(Footprint footprint, vec2 half_size) {
+  float half_side = footprint.radius * (0.5 * sqrt(kPi));
+  vec2 low = clamp(footprint.center - vec2(half_side), -half_size, half_size);
+  vec2 high = clamp(footprint.center + vec2(half_side), -half_size, half_size);
+  LitPart part;
+  part.center = 0.5 * (low + high);
+  part.area = (high.x - low.x) * (high.y - low.y);
+  return part;
+}

@@ -1,0 +1,33 @@
+#pragma once
+// One point of a rectangle or a disk that stands for the whole in the diffuse integral [Drobot 2014, §1.3.3].
+// Dual: also compiles as C++. Everything is in the light's frame: centre at the origin, z along the lit side's normal,
+// m; `point` is shaded, point.z > 0; `normal` is its unit normal.
+#include "surface.glsl"
+
+// Where the surface turns away from the light's plane the ray along its normal never meets it, and cosθ_i grows towards
+// the plane's infinity. Drobot says that the ray is to be skewed towards the plane and gives no formula. Ours: the
+// direction n − max(kSkew + n_z, 0)·z, continuous, whose cosine to the plane is never below kSkew.
+const float kSkew = 0.1;
+
+// p' − p in the light's plane: the (skewed) ray along the normal, where cosθ_i is greatest.
+vec2 NormalHit(vec3 point, vec3 normal) { return vec2(normal.x, normal.y) * (point.z / max(-normal.z, kSkew)); }
+
+// p'' − p in the light's plane, where 1/r² is greatest above the horizon: the foot of the perpendicular, or the point of
+// the horizon's line nearest to it where the foot lies below. Where the whole plane lies below there is none; what is
+// returned is then far away, finite.
+vec2 NearestHit(vec3 point, vec3 normal) {
+  float tangent2 = max(normal.x * normal.x + normal.y * normal.y, kSkew * kSkew);
+  return vec2(normal.x, normal.y) * (point.z * max(normal.z, 0.0) / tangent2);
+}
+
+vec2 ClosestOnRectangle(vec2 p, vec2 half_size) { return clamp(p, -half_size, half_size); }
+
+vec2 ClosestOnDisk(vec2 p, float radius) { return p * (radius / max(radius, length(p))); }
+
+// Where the halfway vector between the directions to point + (a, −z) and point + (b, −z) meets the light's plane.
+// Their bisector divides the segment as the distances do.
+vec2 HalfwayHit(vec3 point, vec2 a, vec2 b) {
+  float length_a = sqrt(dot(a, a) + point.z * point.z);
+  float length_b = sqrt(dot(b, b) + point.z * point.z);
+  return vec2(point.x, point.y) + (a * length_b + b * length_a) / max(length_a + length_b, 1e-30);
+}

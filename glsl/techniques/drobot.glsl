@@ -1,0 +1,153 @@
+/*---
+summary = "One representative point for the diffuse lobe, one at the middle of the light's part in the lobe's cone for the specular"
+citation = "Drobot 2014"
+author_note = "point=halfway, extent=area, cone=threshold are Drobot's for rectangle and disk, his sphere diffuse is the closed form; ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, the bounds 2π and the cone's own solid angle, extent=solid_angle, cone=energy"
+shapes = ["rectangle", "disk", "sphere"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["two_sided", "fresnel", "many_lights"]
+exact = ["lambert_sphere"]
+
+[[option]]
+name = "point"
+summary = "which point stands for the diffuse light"
+choices = [
+  ["closest", "between the points of the light closest to both maxima (his accurate form, stated error 0.05)"],
+  ["halfway", "between both maxima on the light's plane, then the closest point of the light (his shipped form, stated error 0.15)"],
+]
+
+[[option]]
+name = "extent"
+summary = "the light's extent in the diffuse integral"
+choices = [
+  ["area", "area · cosine / distance² at the point (eq. 1.16)"],
+  ["solid_angle", "the shape's solid angle (ours)"],
+]
+
+[[option]]
+name = "cone"
+summary = "the specular importance cone"
+choices = [
+  ["energy", "as wide as conserves the lobe's energy (ours)"],
+  ["threshold", "where the lobe falls to 1/e of its peak (eq. 1.18's threshold, for GGX)"],
+]
+
+[published]
+point = "halfway"
+extent = "area"
+cone = "threshold"
+---*/
+#include "brdf.glsl"
+#include "importance_cone.glsl"
+#include "representative_point.glsl"
+#include "solid_angle.glsl"
+#include "spherical_cap.glsl"
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  Radiance result;
+  result.diffuse = vec3(0.0);
+  result.specular = vec3(0.0);
+  float n_dot_v = clamp(dot(surface.normal, to_view), 0.0, 1.0);
+  vec3 mirror = surface.normal * (2.0 * dot(surface.normal, to_view)) - to_view;
+#if CONE_ENERGY
+  float cone_versine = EnergyConeVersine(surface.alpha, n_dot_v);
+#else
+  float cone_versine = ThresholdConeVersine(surface.alpha);
+#endif
+  // No part of the light within the cone is larger than the cone, nor than what lies above the horizon.
+  float cone_solid_angle = 2.0 * kPi * min(cone_versine, 1.0);
+
+#if EFFECT_SPHERE
+  if (light.shape == SHAPE_SPHERE) {
+    Cap sphere = SphereCap(light.center - surface.position, light.half_size.x, surface.normal);
+    result.diffuse = surface.diffuse_albedo * SphereFormFactor(dot(surface.normal, sphere.axis), sphere.versine);
+
+    float cone_radius = AngleFromVersine(cone_versine);
+    float sphere_radius = AngleFromVersine(sphere.versine);
+    float versine = VersineBetween(mirror, sphere.axis);
+    float between = AngleFromVersine(versine);
+    float solid_angle = 2.0 * kPi * min(min(cone_versine, sphere.versine), 1.0) *
+                        SmoothstepOverlap(cone_radius, sphere_radius, between);
+    vec3 to_light = AlongArc(mirror, sphere.axis, versine, OverlapCenter(cone_radius, sphere_radius, between));
+    result.specular = SpecularLobe(surface, to_view, to_light) * solid_angle;
+  }
+#endif
+#if EFFECT_RECTANGLE || EFFECT_DISK
+#if EFFECT_SPHERE
+  if (light.shape != SHAPE_SPHERE)
+#endif
+  {
+    // All in the light's frame.
+    vec3 offset = surface.position - light.center;
+    vec3 point = vec3(dot(offset, light.axis_x), dot(offset, light.axis_y), dot(offset, light.normal));
+    point.z = max(point.z, 1e-6 * (light.half_size.x + light.half_size.y));  // touching is taken as just above
+    Surface local = surface;
+    local.normal = vec3(dot(surface.normal, light.axis_x), dot(surface.normal, light.axis_y),
+                        dot(surface.normal, light.normal));
+    vec3 view = vec3(dot(to_view, light.axis_x), dot(to_view, light.axis_y), dot(to_view, light.normal));
+    vec3 local_mirror = local.normal * (2.0 * dot(local.normal, view)) - view;
+
+    vec2 foot = vec2(point.x, point.y);
+    vec2 diffuse_point;
+    LitPart part;
+    float solid_angle;
+    vec2 normal_hit = NormalHit(point, local.normal);
+#if POINT_CLOSEST
+    vec2 nearest_hit = NearestHit(point, local.normal);
+#else
+    vec2 halfway_hit = HalfwayHit(point, normal_hit, vec2(0.0));
+#endif
+    Footprint footprint = ConeFootprint(point, local_mirror, cone_versine, CONE_ENERGY == 1);
+#if EFFECT_DISK
+#if EFFECT_RECTANGLE
+    if (light.shape == SHAPE_DISK)
+#endif
+    {
+      float radius = light.half_size.x;
+#if POINT_CLOSEST
+      diffuse_point = HalfwayHit(point, ClosestOnDisk(foot + normal_hit, radius) - foot,
+                                 ClosestOnDisk(foot + nearest_hit, radius) - foot);
+#else
+      diffuse_point = ClosestOnDisk(halfway_hit, radius);
+#endif
+      part = FootprintOnDisk(footprint, radius);
+#if EXTENT_SOLID_ANGLE
+      solid_angle = DiskSolidAngle(point, radius);
+#endif
+    }
+#if EFFECT_RECTANGLE
+    else
+#endif
+#endif
+#if EFFECT_RECTANGLE
+    {
+#if POINT_CLOSEST
+      diffuse_point = HalfwayHit(point, ClosestOnRectangle(foot + normal_hit, light.half_size) - foot,
+                                 ClosestOnRectangle(foot + nearest_hit, light.half_size) - foot);
+#else
+      diffuse_point = ClosestOnRectangle(halfway_hit, light.half_size);
+#endif
+      part = FootprintOnRectangle(footprint, light.half_size);
+#if EXTENT_SOLID_ANGLE
+      solid_angle = RectangleSolidAngle(point, light.half_size);
+#endif
+    }
+#endif
+    vec3 to_point = vec3(diffuse_point - foot, -point.z);
+    float inverse_distance = inversesqrt(dot(to_point, to_point));
+#if EXTENT_AREA
+    solid_angle = min(light.area * point.z * inverse_distance * inverse_distance * inverse_distance, 2.0 * kPi);
+#endif
+    float cos_surface = max(dot(local.normal, to_point) * inverse_distance, 0.0);
+    result.diffuse = surface.diffuse_albedo * min(cos_surface * solid_angle / kPi, 1.0);
+
+    vec3 to_part = vec3(part.center - foot, -point.z);
+    inverse_distance = inversesqrt(dot(to_part, to_part));
+    solid_angle = part.area * point.z * inverse_distance * inverse_distance * inverse_distance;
+    result.specular = SpecularLobe(local, view, to_part * inverse_distance) * min(solid_angle, cone_solid_angle);
+  }
+#endif
+  result.diffuse *= light.radiance;
+  result.specular *= light.radiance;
+  return result;
+}

@@ -1,0 +1,116 @@
+/*---
+summary = "The light's spherical cap intersected with the cap of open sky, the hemisphere where nothing is baked"
+citation = "Oat 2006"
+author_note = "overlap=smoothstep, centroid=average are Oat's, for diffuse light from spheres; ours: the exact overlap and its centroid, rectangle and disk as the cap of equal solid angle about the direction to their centre, and the specular lobe as a GGX cone intersected with the light's cap, as bright in total as the lobe"
+shapes = ["rectangle", "disk", "sphere"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["two_sided", "fresnel", "many_lights"]
+exact = ["lambert_sphere"]
+
+[[option]]
+name = "overlap"
+summary = "the area that two caps share"
+choices = [
+  ["exact", "by spherical geometry"],
+  ["smoothstep", "the smaller cap times a smoothstep between touching and containing"],
+]
+
+[[option]]
+name = "centroid"
+summary = "the direction at which Lambert's cosine is taken"
+choices = [
+  ["overlap", "the centroid of the shared part (ours)"],
+  ["average", "halfway between the light's and the aperture's axis"],
+]
+
+[published]
+overlap = "smoothstep"
+centroid = "average"
+---*/
+#include "brdf.glsl"
+#include "importance_cone.glsl"
+#include "solid_angle.glsl"
+#include "specular_albedo.glsl"
+#include "spherical_cap.glsl"
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  vec3 to_center = light.center - surface.position;
+  Cap source;
+#if EFFECT_SPHERE
+#if EFFECT_RECTANGLE || EFFECT_DISK
+  if (light.shape == SHAPE_SPHERE)
+#endif
+  {
+    source = SphereCap(to_center, light.half_size.x, surface.normal);
+  }
+#if EFFECT_RECTANGLE || EFFECT_DISK
+  else
+#endif
+#endif
+#if EFFECT_RECTANGLE || EFFECT_DISK
+  {
+    vec3 point = -vec3(dot(to_center, light.axis_x), dot(to_center, light.axis_y), dot(to_center, light.normal));
+    float solid_angle = 0.0;
+#if EFFECT_RECTANGLE && EFFECT_DISK
+    if (light.shape == SHAPE_DISK) {
+      solid_angle = DiskSolidAngle(point, light.half_size.x);
+    } else {
+      solid_angle = RectangleSolidAngle(point, light.half_size);
+    }
+#elif EFFECT_DISK
+    solid_angle = DiskSolidAngle(point, light.half_size.x);
+#else
+    solid_angle = RectangleSolidAngle(point, light.half_size);
+#endif
+    source = SphereCap(to_center, 0.0, surface.normal);
+    source.versine = solid_angle / (2.0 * kPi);
+  }
+#endif
+
+  Cap aperture;
+  aperture.axis = surface.normal;
+  aperture.versine = 1.0;
+  Cap lobe;
+  float n_dot_v = clamp(dot(surface.normal, to_view), 0.0, 1.0);
+  lobe.axis = surface.normal * (2.0 * dot(surface.normal, to_view)) - to_view;
+  lobe.versine = max(EnergyConeVersine(surface.alpha, n_dot_v), 1e-12);  // below it float's directions are all alike
+
+  // Areas over 2π: of the light's part in the aperture, of the aperture's part in the light's, of its part in the lobe.
+#if OVERLAP_EXACT
+  CapOverlap open = IntersectCaps(aperture, source);
+  float open_area = open.area / (2.0 * kPi);
+  float lobe_area = IntersectCaps(lobe, source).area / (2.0 * kPi);
+#else
+  float source_radius = AngleFromVersine(source.versine);
+  float open_area = min(aperture.versine, source.versine) *
+                    SmoothstepOverlap(AngleFromVersine(aperture.versine), source_radius,
+                                      AngleFromVersine(VersineBetween(aperture.axis, source.axis)));
+  float lobe_area = min(lobe.versine, source.versine) *
+                    SmoothstepOverlap(AngleFromVersine(lobe.versine), source_radius,
+                                      AngleFromVersine(VersineBetween(lobe.axis, source.axis)));
+#endif
+
+#if CENTROID_AVERAGE
+  vec3 sum = aperture.axis + source.axis;
+  float cos_centroid = max(dot(surface.normal, sum) * inversesqrt(max(dot(sum, sum), 1e-20)), 0.0);
+#elif OVERLAP_EXACT
+  float cos_centroid = max(dot(surface.normal, open.moment), 0.0) / max(open.area, 1e-30);
+#else
+  CapOverlap open = IntersectCaps(aperture, source);
+  float cos_centroid = max(dot(surface.normal, open.moment), 0.0) / max(open.area, 1e-30);
+#endif
+
+  Radiance result;
+  result.diffuse = light.radiance * surface.diffuse_albedo * (2.0 * open_area * min(cos_centroid, 1.0));
+  // The lobe is taken as even over its cone, and as open as the light is.
+  vec2 energy = SpecularAlbedo(n_dot_v, surface.roughness);
+#if EFFECT_FRESNEL
+  vec3 reflectance = surface.f0 * (energy.x - energy.y) + vec3(energy.y);
+#else
+  vec3 reflectance = surface.f0 * energy.x;
+#endif
+  float openness = min(open_area / max(source.versine, 1e-30), 1.0);
+  result.specular = light.radiance * reflectance * (openness * min(lobe_area / lobe.versine, 1.0));
+  return result;
+}
