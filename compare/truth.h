@@ -12,9 +12,10 @@ namespace arealab {
 
 // What one light does to one shaded point, for white albedo and unit radiance.
 struct LightIntegrals {
-  double form_factor = 0.0;     // ∫ cosθ_i / π dω over the visible light
-  double specular = 0.0;        // ∫ D G2 / (4 cosθ_o) dω: the lobe with Fresnel 1
-  double specular_grazing = 0.0;  // the same weighted by (1 − h·v)^5: radiance = F0·(specular − grazing) + grazing
+  double form_factor = 0.0;  // ∫ cosθ_i / π dω over the visible light
+  double specular = 0.0;     // ∫ D G2 / (4 cosθ_o) dω: the lobe with Fresnel 1
+  double specular_grazing =
+      0.0;  // the same weighted by (1 − h·v)^5: radiance = F0·(specular − grazing) + grazing
   double form_factor_error = 0.0;  // absolute, estimated, each at least its rounding error
   double specular_error = 0.0;
   double specular_grazing_error = 0.0;
@@ -27,7 +28,8 @@ struct ShadingPoint {
   double alpha;         // GGX, roughness²
 };
 
-// Throws nothing; a point turned away from the viewer, or a light wholly below the horizon or facing away, gives zeros.
+// Throws nothing; a point turned away from the viewer, or a light wholly below the horizon or facing away,
+// gives zeros.
 LightIntegrals IntegrateLight(const ShadingPoint& point, const Light& light, double tolerance);
 
 struct Truth {
@@ -39,7 +41,7 @@ struct Truth {
 };
 
 struct TruthOptions {
-  double tolerance = 1e-4;  // relative, per pixel and light
+  double tolerance = 1e-4;               // relative, per pixel and light
   std::function<void(double)> progress;  // fraction done in [0, 1]; may be empty; called from one thread
 };
 

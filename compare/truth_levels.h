@@ -1,0 +1,23 @@
+// The fixed levels of the specular rule, from coarse to fine: for the integrator's tests and its calibration.
+#pragma once
+
+#include <array>
+
+#include "compare/truth.h"
+
+namespace arealab {
+
+struct TruthLevel {
+  double outer,
+      outer_per_radian;  // nodes on a panel of the outline: outer + outer_per_radian · its reduced length
+  int radial;            // nodes on a ray
+  int splits;            // every panel and every ray is cut into this many equal parts
+};
+
+constexpr int kTruthLevelCount = 8;
+const std::array<TruthLevel, kTruthLevelCount>& TruthLevels();
+
+// IntegrateLight with one level and no check; the error members stay 0.
+LightIntegrals IntegrateLightAtLevel(const ShadingPoint& point, const Light& light, int level);
+
+}  // namespace arealab

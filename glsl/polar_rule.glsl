@@ -1,0 +1,67 @@
+#pragma once
+// Noise-free specular integral over a light, in the plane of half-vector slopes. Dual: C++ too (glsl/dual_begin.h).
+//
+// Frame: the normal is z, the viewer v = (sin_v, 0, cos_v). A light direction l has the half-vector slope
+// s = (l + v)_xy / (l + v)_z, 0 at the mirror direction. There GGX is round, P22(s) = α² / (π (α² + |s|²)²), and the
+// hemisphere above the horizon is a disk that contains 0: |s − v_xy/v_z| ≤ 1/v_z. With dω_l = 4 (v·h) dω_h,
+//   ∫ D G2 / (4 cosθ_v) dω_l = ∫ P22(s) · 4 (sin_v s_x + cos_v) · V(n·v, n·l) n·l d²s,  V = G2 / (4 n·l n·v).
+// In polar coordinates (φ, χ), |s| = α tan χ, P22 |s| d|s| = sin 2χ dχ / 2π: the peak is gone from the integrand.
+// A region is its outline: Σ over arcs ∫ (dφ/dt) ∫ from a ring |s| = ring_slope to s(t) of sin 2χ / 2π · … dχ dt. The ring is
+// the circle that touches the region, or 0 where the mirror direction is inside; all rays are radial and none leaves
+// the disk, so nothing sharp is left but the shadowing at the very horizon, towards which the nodes crowd.
+#include "brdf.glsl"
+
+struct LobeView {
+  float sin_v;  // ≥ 0
+  float cos_v;  // > 0
+  float alpha;
+};
+
+// An arc of the outline: l(ψ) = axis_1 sin_1 cosψ + axis_2 sin_2 sinψ + axis_3 √((cos_1 cosψ)² + (cos_2 sinψ)²), unit, with
+// t = tan(ψ/2) from t0 to t1 within [−1, 1]; sin_i² + cos_i² = 1. A great circle has cos_1 = cos_2 = 0, a circle both
+// equal, the outline of a disk both different, and axis_1 is then its long half axis (cos_1 ≤ cos_2).
+struct Arc {
+  vec3 axis_1;
+  vec3 axis_2;
+  vec3 axis_3;
+  float sin_1;
+  float sin_2;
+  float cos_1;
+  float cos_2;
+  float t0;
+  float t1;
+};
+
+// Slope s and ds/dt at t.
+void ArcSlope(Arc arc, LobeView view, float t, OUT(vec2) slope, OUT(vec2) derivative) {
+  float c = 1.0 - t * t;  // (1 + t²) cosψ
+  float d = 2.0 * t;      // (1 + t²) sinψ
+  float g = 1.0 + t * t;
+  float x1 = arc.cos_1 * c;
+  float x2 = arc.cos_2 * d;
+  float x3 = sqrt(x1 * x1 + x2 * x2);
+  float dx3 = 2.0 * (arc.cos_2 * x2 - arc.cos_1 * x1 * t) / max(x3, 1e-30);  // 0 / 1e-30 on a great circle
+  vec3 q = arc.axis_1 * (arc.sin_1 * c) + arc.axis_2 * (arc.sin_2 * d) + arc.axis_3 * x3;
+  vec3 dq = arc.axis_1 * (arc.sin_1 * -d) + arc.axis_2 * (arc.sin_2 * 2.0) + arc.axis_3 * dx3;
+  q.x += g * view.sin_v;
+  q.z += g * view.cos_v;
+  dq.x += d * view.sin_v;
+  dq.z += d * view.cos_v;
+  float inv = 1.0 / q.z;
+  slope = vec2(q.x * inv, q.y * inv);
+  derivative = vec2((dq.x - slope.x * dq.z) * inv, (dq.y - slope.y * dq.z) * inv);
+}
+
+// Cosine n·l of the light direction whose half vector has the slope s.
+float CosineFromSlope(LobeView view, float slope_x, float slope2) {
+  return 2.0 * (view.sin_v * slope_x + view.cos_v) / (1.0 + slope2) - view.cos_v;
+}
+
+// What multiplies P22: with Fresnel 1, and with Schlick's weight.
+vec2 LobeWeights(LobeView view, float slope_x, float slope2) {
+  float v = view.sin_v * slope_x + view.cos_v;  // (v·h) √(1 + |s|²)
+  float inv = 1.0 / (1.0 + slope2);
+  float n_dot_l = max(2.0 * v * inv - view.cos_v, 0.0);
+  float lobe = 4.0 * v * SmithVisibility(view.cos_v, n_dot_l, view.alpha) * n_dot_l;
+  return vec2(lobe, lobe * SchlickWeight(v * sqrt(inv)));
+}
