@@ -9,7 +9,8 @@
 namespace arealab::fit {
 namespace {
 
-constexpr int kAlbedoNodes = 48;  // albedo to 1e-7 (measured), 1e-8 over most of the table
+constexpr int kAlbedoNodes = 48;       // albedo to 1e-7 (measured), 1e-8 over most of the table
+constexpr int kPublishedSamples = 32;  // per axis, ltc_code's
 
 // Four terms of P and, where it is free, the weight of the cosine lobe.
 using Unknowns = Eigen::Matrix<double, 5, 1>;
@@ -347,7 +348,7 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
 }
 
 PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, const AverageFrameTerms& start) {
-  const LobeMoments moments = Moments(UpperNodes(view, kAlbedoNodes, kAlbedoNodes));
+  const LobeMoments moments = SampledMoments(view, kPublishedSamples);
   const Whitening mirror = MirrorWhitening(view);
   Nodes all = UpperNodes(view, nodes, nodes);
   AppendLowerNodes(mirror, nodes, &all);

@@ -145,8 +145,8 @@ LobeMoments SampledMoments(const View& view, int count) {
       const glm::dvec3 to_light = 2.0 * v_dot_h * half - to_view;
       if (to_light.z <= 0.0) continue;
       // ρ over the samples' density D h·n/(4 |v·h|).
-      const double share =
-          dual::SmithVisibility(view.cosine, to_light.z, view.alpha) * to_light.z * 4.0 * std::abs(v_dot_h) / half.z;
+      const double share = dual::SmithVisibility(view.cosine, to_light.z, view.alpha) * to_light.z * 4.0 *
+                           std::abs(v_dot_h) / half.z;
       moments.albedo += share;
       moments.schlick += share * dual::SchlickWeight(v_dot_h);
       sum += share * to_light;

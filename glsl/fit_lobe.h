@@ -51,6 +51,11 @@ struct LobeMoments {
 };
 LobeMoments Moments(const Nodes& upper);
 
+// The same by the estimator of the published fit: `count`² mid-point samples of the half vector by D, uniform
+// in azimuth and in tan²θ/(α² + tan²θ). It cuts the lobe's tail short, which at grazing views moves the mean
+// direction by degrees and the albedo by percents; the shipped tables carry that error.
+LobeMoments SampledMoments(const View& view, int count);
+
 // The axis that all tables share: position x ∈ [0, 1] of the view angle, x = √((1 − cos θ)/(1 − cos θ_last)).
 double ViewCosine(double x, double last_cosine);
 double ViewPosition(double cosine, double last_cosine);
