@@ -275,7 +275,8 @@ MeshFile LoadMeshFile(const fs::path& file, const fs::path& root) {
   }
   if (!scene || !scene->mRootNode) {
     std::string why = importer.GetErrorString();
-    std::replace(why.begin(), why.end(), '\n', ' ');
+    if (const auto at = why.find(file.string()); at != std::string::npos)
+      why.replace(at, file.string().size(), name);
     throw InputError(
         fmt::format("'{}' cannot be read as a mesh ({}); expected a valid {} file", name, why, extension));
   }

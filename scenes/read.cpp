@@ -89,13 +89,16 @@ std::string_view TypeName(const toml::node& node) {
   if (node.is_string()) return "a string";
   if (node.is_integer()) return "an integer";
   if (node.is_floating_point()) return "a number";
-  if (node.is_boolean()) return "true or false";
+  if (node.is_boolean()) return "a boolean";
   if (node.is_table()) return "a table";
   if (node.is_array()) return "an array";
   return "a date or time";
 }
 
-[[noreturn]] void FailAtLine(const fs::path& file, toml::source_index line, const std::string& what) {
+// One line whatever the file's names hold: a control character could break it or reach a terminal.
+[[noreturn]] void FailAtLine(const fs::path& file, toml::source_index line, std::string what) {
+  std::replace_if(
+      what.begin(), what.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   throw InputError(fmt::format("{}:{}: {}", file.string(), std::max<toml::source_index>(line, 1), what));
 }
 
@@ -246,7 +249,7 @@ glm::dvec3 Dunes(double x, double y, double wavelength, double amplitude) {
     const double slope = height * frequency * std::cos(phase);
     result += glm::dvec3(height * std::sin(phase), slope * cx, slope * cy);
     frequency *= 1.61803398874989;  // golden ratio: incommensurable
-    height *= 0.38196601125011;  // its inverse square: slopes fall off too
+    height *= 0.38196601125011;     // its inverse square: slopes fall off too
   }
   return result;
 }
@@ -265,9 +268,8 @@ class SceneReader {
     try {
       root_table = toml::parse(text);
     } catch (const toml::parse_error& error) {
-      std::string what(error.description());
-      std::replace(what.begin(), what.end(), '\n', ' ');
-      FailAtLine(file_, error.source().begin.line, fmt::format("{}; expected valid TOML", what));
+      FailAtLine(file_, error.source().begin.line,
+                 fmt::format("{}; expected valid TOML", error.description()));
     }
     const Fields root(file_, root_table, "the scene");
     root.Allow({"units", "exposure", "camera", "material", "surface", "light"});
