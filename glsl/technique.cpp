@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <set>
 #include <string_view>
 
+#include "glsl/effects.h"
 #include "glsl/nearest.h"
 #include "scenes/error.h"
 
@@ -33,6 +35,26 @@ const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lam
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
                                                 "technique", "platform", "techniques", "tables", "published"};
 
+std::string Upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::string Lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// "two_sided" for each EFFECT_TWO_SIDED that the host emits.
+std::vector<std::string> KnownEffects() {
+  constexpr std::string_view kPrefix = "EFFECT_";
+  std::vector<std::string> names;
+  for (const auto& [define, value] : SceneEffects(Scene{})) {
+    names.push_back(Lower(define.substr(kPrefix.size())));
+  }
+  return names;
+}
+
 std::string_view NextLine(std::string_view& text) {
   const auto end = std::min(text.find('\n'), text.size());
   std::string_view line = text.substr(0, end);
@@ -46,11 +68,6 @@ bool IsIdentifier(std::string_view name) {
   return !name.empty() && lower(name[0]) && name.find("__") == std::string_view::npos &&
          std::all_of(name.begin(), name.end(),
                      [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-std::string Upper(std::string text) {
-  for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  return text;
 }
 
 // Reads one technique file's header; every complaint carries the file and the line.
@@ -175,14 +192,14 @@ class HeaderReader {
 
   // The names under `key`, each one of `known` and none twice; no key: none.
   std::vector<std::string> NameList(const toml::table& root, std::string_view key,
-                                    const std::vector<std::string>* known) const {
+                                    const std::vector<std::string>& known) const {
     std::vector<std::string> names;
     const toml::node* list = root.get(key);
     if (!list) return names;
     for (const toml::node& node : Array(*list, key)) {
       const std::string name = Identifier(node, key);
-      if (known && std::find(known->begin(), known->end(), name) == known->end()) {
-        Fail(LineOf(node), fmt::format("unknown name \"{}\" in {}", name, key), ExpectedNames(name, *known));
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        Fail(LineOf(node), fmt::format("unknown name \"{}\" in {}", name, key), ExpectedNames(name, known));
       }
       if (std::find(names.begin(), names.end(), name) != names.end()) {
         Fail(LineOf(node), fmt::format("\"{}\" stands twice in {}", name, key), "each name once");
@@ -195,7 +212,7 @@ class HeaderReader {
   std::vector<std::string> NeededList(const toml::table& root, std::string_view key,
                                       const std::vector<std::string>& known) const {
     const toml::node& list = Get(root, key, 1);
-    std::vector<std::string> names = NameList(root, key, &known);
+    std::vector<std::string> names = NameList(root, key, known);
     if (names.empty()) Fail(LineOf(list), fmt::format("{} is empty", key), ExpectedNames("", known));
     return names;
   }
@@ -211,8 +228,8 @@ class HeaderReader {
     technique.diffuse = std::find(lobes.begin(), lobes.end(), "diffuse") != lobes.end();
     technique.specular = std::find(lobes.begin(), lobes.end(), "specular") != lobes.end();
     technique.brdfs = NeededList(root, "brdfs", kBrdfs);
-    technique.effects = NameList(root, "effects", nullptr);
-    technique.exact = NameList(root, "exact", &kClaims);
+    technique.effects = NameList(root, "effects", KnownEffects());
+    technique.exact = NameList(root, "exact", kClaims);
   }
 
   // The tables of `[[key]]`.
