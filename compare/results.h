@@ -73,4 +73,13 @@ struct Results {
   std::vector<SceneResult> scenes;
 };
 
+// results.json: the schema of design.md, version 1, indented; null where not finite or not measured.
+std::string ResultsJson(const Results& results);
+
+// results.csv (RFC 4180): one row per scene, variant and lobe; empty where not finite or not measured.
+std::string ResultsCsv(const Results& results);
+
+// The scene's variants as aligned columns for a terminal, sorted by total error, the unsupported ones last with their reason.
+std::string SummaryTable(const SceneResult& scene);
+
 }  // namespace arealab

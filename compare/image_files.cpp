@@ -1,0 +1,229 @@
+#include "compare/image_files.h"
+
+#include <Imath/half.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+constexpr float kLargestHalf = 65504.0f;  // (2 − 2⁻¹⁰) · 2¹⁵
+constexpr float kSmallestPeak = 0.0625f;  // 10 stops above the smallest normal half, 2⁻¹⁴: full precision down to 1/1024 of it
+const char* const kLobes[2] = {"diffuse", "specular"};
+
+// IEEE 754 binary16: sign, 5 bits of exponent biased by 15, 10 of fraction.
+float HalfToFloat(std::uint16_t bits) {
+  const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
+  float v = 0.0f;
+  if (exponent == 31) {
+    v = fraction == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+  } else if (exponent == 0) {
+    v = std::ldexp(static_cast<float>(fraction), -24);
+  } else {
+    v = std::ldexp(static_cast<float>(fraction + 1024), exponent - 25);
+  }
+  return (bits & 0x8000) != 0 ? -v : v;
+}
+
+[[noreturn]] void Fail(const std::filesystem::path& file, const std::string& why) {
+  throw InputError(fmt::format("{}: cannot write the image ({}); expected a folder with room that may be written to",
+                               file.string(), why));
+}
+
+// `pixels` are interleaved, `stride` bytes a pixel.
+void WriteFile(const std::filesystem::path& file, const OIIO::ImageSpec& spec, const void* pixels) {
+  auto output = OIIO::ImageOutput::create(file.string());
+  if (!output) Fail(file, OIIO::geterror());
+  output->threads(1);  // the caller writes many files at once
+  if (!output->open(file.string(), spec) || !output->write_image(spec.format, pixels) || !output->close()) {
+    Fail(file, output->geterror());
+  }
+}
+
+// sRGB's transfer curve [IEC 61966-2-1], in and out in [0, 1].
+float EncodeSrgb(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f; }
+
+// 8-bit codes by a table over [0, 1]: 4096 steps are finer than the codes except near black, where the curve is a line.
+std::uint8_t SrgbCode(float v) {
+  constexpr int kSteps = 4096;
+  static const std::vector<std::uint8_t> table = [] {
+    std::vector<std::uint8_t> codes;
+    for (int i = 0; i <= kSteps; ++i) {
+      codes.push_back(static_cast<std::uint8_t>(std::lround(255.0f * EncodeSrgb(static_cast<float>(i) / kSteps))));
+    }
+    return codes;
+  }();
+  if (v < 0.02f) return static_cast<std::uint8_t>(std::lround(255.0f * EncodeSrgb(std::max(v, 0.0f))));
+  return table[static_cast<std::size_t>(std::lround(std::min(v, 1.0f) * kSteps))];
+}
+
+}  // namespace
+
+bool HalfImage::IsGray(int lobe) const {
+  const std::size_t first = 3 * static_cast<std::size_t>(lobe);
+  return planes[first] == planes[first + 1] && planes[first] == planes[first + 2];
+}
+
+float HalfImage::Value(int plane, std::size_t i) const {
+  return std::ldexp(HalfToFloat(planes[static_cast<std::size_t>(plane)][i]), exponent);
+}
+
+HalfImage ToHalf(const RadianceImage& image) {
+  float largest = 0.0f;
+  for (const auto* lobe : {&image.diffuse, &image.specular}) {
+    for (const glm::vec3& v : *lobe) {
+      for (int c = 0; c < 3; ++c) {
+        if (std::isfinite(v[c])) largest = std::max(largest, std::abs(v[c]));
+      }
+    }
+  }
+  HalfImage result;
+  result.width = image.width;
+  result.height = image.height;
+  if (largest > 0.0f && (largest < kSmallestPeak || largest > kLargestHalf)) {
+    result.exponent = std::ilogb(largest) - 14;
+  }
+  const float scale = std::ldexp(1.0f, -result.exponent);
+  for (std::size_t plane = 0; plane < 6; ++plane) {
+    const auto& lobe = plane < 3 ? image.diffuse : image.specular;
+    const int channel = static_cast<int>(plane % 3);
+    auto& bits = result.planes[plane];
+    bits.resize(image.size());
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      const float v = lobe[i][channel];
+      // A −0 would cost the coder a jump of 32768 for nothing.
+      bits[i] = v == 0.0f ? std::uint16_t{0} : half(v * scale).bits();
+    }
+  }
+  return result;
+}
+
+RadianceImage FromHalf(const HalfImage& image) {
+  RadianceImage result;
+  result.width = image.width;
+  result.height = image.height;
+  result.diffuse.resize(image.planes[0].size());
+  result.specular.resize(image.planes[0].size());
+  for (std::size_t i = 0; i < result.diffuse.size(); ++i) {
+    result.diffuse[i] = {image.Value(0, i), image.Value(1, i), image.Value(2, i)};
+    result.specular[i] = {image.Value(3, i), image.Value(4, i), image.Value(5, i)};
+  }
+  return result;
+}
+
+void WriteExr(const std::filesystem::path& file, const HalfImage& image) {
+  std::vector<int> planes;
+  std::vector<std::string> names;
+  for (int lobe = 0; lobe < 2; ++lobe) {
+    const bool gray = image.IsGray(lobe);
+    for (int channel = 0; channel < (gray ? 1 : 3); ++channel) {
+      planes.push_back(3 * lobe + channel);
+      names.push_back(fmt::format("{}.{}", kLobes[lobe], gray ? 'Y' : "RGB"[channel]));
+    }
+  }
+  const bool as_half = image.exponent == 0;
+  const int count = static_cast<int>(planes.size());
+  OIIO::ImageSpec spec(image.width, image.height, count, as_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+  spec.channelnames = names;
+  // Measured on smooth shading, 512×512, 6 channels: PIZ 617 KB, ZIP 325, PXR24 268 (which is lossless for halves).
+  spec.attribute("compression", as_half ? "pxr24" : "zip");
+  const std::size_t size = image.planes[0].size();
+  if (as_half) {
+    std::vector<std::uint16_t> pixels(size * planes.size());
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+      const auto& plane = image.planes[static_cast<std::size_t>(planes[p])];
+      for (std::size_t i = 0; i < size; ++i) pixels[i * planes.size() + p] = plane[i];
+    }
+    WriteFile(file, spec, pixels.data());
+  } else {
+    std::vector<float> pixels(size * planes.size());
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+      for (std::size_t i = 0; i < size; ++i) pixels[i * planes.size() + p] = image.Value(planes[p], i);
+    }
+    WriteFile(file, spec, pixels.data());
+  }
+}
+
+void WriteExr(const std::filesystem::path& file, const RadianceImage& image) {
+  OIIO::ImageSpec spec(image.width, image.height, 6, OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  for (const char* lobe : kLobes) {
+    for (char channel : {'R', 'G', 'B'}) spec.channelnames.push_back(fmt::format("{}.{}", lobe, channel));
+  }
+  spec.attribute("compression", "zip");
+  std::vector<float> pixels;
+  pixels.reserve(6 * image.size());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    for (const auto* lobe : {&image.diffuse, &image.specular}) {
+      for (int c = 0; c < 3; ++c) pixels.push_back((*lobe)[i][c]);
+    }
+  }
+  WriteFile(file, spec, pixels.data());
+}
+
+RadianceImage ReadExr(const std::filesystem::path& file) {
+  auto input = OIIO::ImageInput::open(file.string());
+  if (!input) {
+    throw InputError(fmt::format("{}: {}; expected an EXR that AreaLab wrote", file.string(), OIIO::geterror()));
+  }
+  const OIIO::ImageSpec spec = input->spec();
+  std::vector<float> pixels(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
+                            static_cast<std::size_t>(spec.nchannels));
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {
+    throw InputError(fmt::format("{}: {}; expected a whole EXR", file.string(), input->geterror()));
+  }
+  RadianceImage image;
+  image.width = spec.width;
+  image.height = spec.height;
+  for (int lobe = 0; lobe < 2; ++lobe) {
+    const int gray = spec.channelindex(fmt::format("{}.Y", kLobes[lobe]));
+    auto& target = lobe == 0 ? image.diffuse : image.specular;
+    target.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+    for (int c = 0; c < 3; ++c) {
+      const int index = gray >= 0 ? gray : spec.channelindex(fmt::format("{}.{}", kLobes[lobe], "RGB"[c]));
+      if (index < 0) {
+        throw InputError(fmt::format("{}: no layer {}; expected diffuse and specular", file.string(), kLobes[lobe]));
+      }
+      for (std::size_t i = 0; i < target.size(); ++i) {
+        target[i][c] = pixels[i * static_cast<std::size_t>(spec.nchannels) + static_cast<std::size_t>(index)];
+      }
+    }
+  }
+  return image;
+}
+
+void WritePng(const std::filesystem::path& file, std::span<const glm::vec3> radiance, int width, double exposure) {
+  const float scale = static_cast<float>(std::exp2(exposure));
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(3 * radiance.size());
+  for (const glm::vec3& v : radiance) {
+    if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) {
+      for (int c = 0; c < 3; ++c) pixels.push_back(SrgbCode(v[c] * scale));
+    } else {
+      pixels.insert(pixels.end(), {255, 0, 255});
+    }
+  }
+  const int height = static_cast<int>(radiance.size() / static_cast<std::size_t>(width));
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("png:compressionLevel", 6);
+  WriteFile(file, spec, pixels.data());
+}
+
+std::vector<glm::vec3> Picture(const RadianceImage& image, std::span<const glm::vec3> emission) {
+  std::vector<glm::vec3> picture(image.size());
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    picture[i] = image.Total(i);
+    if (!emission.empty()) picture[i] += emission[i];
+  }
+  return picture;
+}
+
+}  // namespace arealab

@@ -1,0 +1,289 @@
+#include "compare/report.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <stdio.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "compare/image_files.h"
+#include "compare/metrics.h"
+#include "compare/page_data.h"
+#include "compare/results_json.h"
+#include "scenes/embedded.h"
+#include "scenes/error.h"
+
+namespace arealab {
+
+namespace report_files {
+extern const EmbeddedFile kFiles[];
+extern const int kFileCount;
+}  // namespace report_files
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string_view ReportFile(std::string_view name) {
+  for (int i = 0; i < report_files::kFileCount; ++i) {
+    if (report_files::kFiles[i].name == name) return report_files::kFiles[i].bytes();
+  }
+  throw std::logic_error(fmt::format("compare/report/{} is not in the program; expected it embedded", name));
+}
+
+fs::path Normal(const fs::path& directory) {
+  fs::path path = fs::absolute(directory).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // "out/"
+  return path;
+}
+
+void WriteText(const fs::path& file, std::string_view text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) throw InputError(fmt::format("{}: cannot write; expected a folder with room", file.string()));
+}
+
+std::string PartialPrefix(const fs::path& target) { return fmt::format(".{}.partial-", target.filename().string()); }
+
+// Folders that an interrupted run left beside the target: those whose process is gone.
+void RemoveStale(const fs::path& target) {
+  const std::string prefix = PartialPrefix(target);
+  std::error_code ignored;
+  std::vector<fs::path> stale;
+  for (const auto& entry : fs::directory_iterator(target.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    const long process = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
+    if (process > 0 && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) stale.push_back(entry.path());
+  }
+  for (const fs::path& folder : stale) fs::remove_all(folder, ignored);
+}
+
+// The folder that is being filled; removed again unless it was moved into place.
+class PartialFolder {
+ public:
+  explicit PartialFolder(const fs::path& target)
+      : target_(target), path_(target.parent_path() / fmt::format("{}{}", PartialPrefix(target), getpid())) {
+    std::error_code error;
+    fs::remove_all(path_, error);
+    fs::create_directories(path_, error);
+    if (error) {
+      throw InputError(fmt::format("{}: cannot create ({}); expected a folder that may be written to", path_.string(),
+                                   error.message()));
+    }
+  }
+  ~PartialFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  PartialFolder(const PartialFolder&) = delete;
+  PartialFolder& operator=(const PartialFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+  // After this path() holds what was there before, if anything, and the destructor removes that.
+  void MoveIntoPlace() {
+    if (rename(path_.c_str(), target_.c_str()) == 0) return;  // nothing there, or an empty folder
+    if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) return;
+    // A file system without exchange: the old report steps aside first.
+    const fs::path old = path_.string() + "-old";
+    std::error_code error;
+    fs::rename(target_, old, error);
+    if (!error) fs::rename(path_, target_, error);
+    if (error) {
+      throw InputError(fmt::format("{}: cannot be replaced ({}); expected a folder that may be renamed",
+                                   target_.string(), error.message()));
+    }
+    fs::remove_all(old, error);
+  }
+
+ private:
+  fs::path target_, path_;
+};
+
+// File names from names that people gave: unique within `taken`.
+std::string FileName(const std::string& name, std::set<std::string>* taken) {
+  std::string file;
+  for (char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       std::string_view("+=@,._-").find(c) != std::string_view::npos;
+    file += plain ? c : '_';
+  }
+  if (file.empty() || file[0] == '.') file = "_" + file;
+  if (file.size() > 120) file.resize(120);
+  std::string unique = file;
+  for (int n = 2; !taken->insert(unique).second; ++n) unique = fmt::format("{}-{}", file, n);
+  return unique;
+}
+
+// One picture's files.
+struct Job {
+  const SceneResult* scene;
+  std::shared_ptr<const RadianceImage> image;
+  std::string folder, stem;
+  bool emission_only = false;
+};
+
+void WriteImages(const Job& job, const fs::path& root) {
+  const SceneResult& scene = *job.scene;
+  const std::string key = job.folder + "/" + job.stem;
+  const HalfImage half = ToHalf(*job.image);
+  WriteText(root / "data" / job.folder / (job.stem + ".js"), EncodePageImage(key, half));
+  if (job.emission_only) return;
+  const fs::path images = root / "images" / job.folder;
+  WriteExr(images / (job.stem + ".exr"), half);
+  const std::span<const glm::vec3> emission =
+      scene.emission ? std::span<const glm::vec3>(*scene.emission) : std::span<const glm::vec3>();
+  WritePng(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width, scene.exposure);
+}
+
+// The luminance below which a relative difference is taken relative to this instead: 1 % of the truth's mean over the
+// pixels that it lights.
+double Floor(const std::vector<glm::vec3>& truth) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const glm::vec3& v : truth) {
+    const double luminance = Luminance(v);
+    if (!std::isfinite(luminance) || v == glm::vec3(0.0f)) continue;
+    sum += luminance;
+    ++count;
+  }
+  return count == 0 ? 0.0 : 0.01 * sum / static_cast<double>(count);
+}
+
+// One scale for all maps of a scene: the 1-2-5 step above the median, over the variants that are ranked, of the relative
+// difference that 95 % of their lit pixels stay below.
+double MapScale(const SceneResult& scene, const std::vector<glm::vec3>& truth, double floor) {
+  std::vector<double> levels;
+  for (const VariantResult& variant : scene.variants) {
+    if (!variant.image || variant.within_truth_error) continue;
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < truth.size(); i += 3) {
+      const double b = Luminance(truth[i]), denominator = std::max(b, floor);
+      if (denominator <= 0.0 || truth[i] == glm::vec3(0.0f)) continue;
+      const double d = std::abs(Luminance(variant.image->Total(i)) - b) / denominator;
+      if (std::isfinite(d)) differences.push_back(d);
+    }
+    if (differences.empty()) continue;
+    const auto level = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() * 95 / 100);
+    std::nth_element(differences.begin(), level, differences.end());
+    levels.push_back(*level);
+  }
+  double typical = 0.1;
+  if (!levels.empty()) {
+    std::nth_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2), levels.end());
+    typical = levels[levels.size() / 2];
+  }
+  const double exponent = std::floor(std::log10(std::clamp(typical, 1e-4, 1.0)));
+  for (double step : {1.0, 2.0, 5.0}) {
+    if (typical <= step * std::pow(10.0, exponent) * (1.0 + 1e-9)) return step * std::pow(10.0, exponent);
+  }
+  return std::min(std::pow(10.0, exponent + 1.0), 1.0);
+}
+
+std::string Substitute(std::string text, std::string_view mark, std::string_view value) {
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) throw std::logic_error(fmt::format("index.html lacks {}; expected it once", mark));
+  return text.replace(at, mark.size(), value);
+}
+
+}  // namespace
+
+void CheckReportDirectory(const fs::path& directory) {
+  const fs::path target = Normal(directory);
+  std::error_code error;
+  if (fs::exists(target, error)) {
+    if (!fs::is_directory(target, error)) {
+      throw InputError(fmt::format("{}: is a file; expected a new folder or an earlier report", target.string()));
+    }
+    if (!fs::is_empty(target, error) &&
+        !(fs::exists(target / "results.json", error) && fs::exists(target / "index.html", error))) {
+      throw InputError(fmt::format("{}: holds something else; expected a new folder or an earlier report", target.string()));
+    }
+    if (error) throw InputError(fmt::format("{}: {}; expected a folder", target.string(), error.message()));
+  }
+  fs::create_directories(target.parent_path(), error);
+  if (error || access(target.parent_path().c_str(), W_OK) != 0) {
+    throw InputError(fmt::format("{}: cannot be written to; expected a folder for the report {}",
+                                 target.parent_path().string(), target.filename().string()));
+  }
+}
+
+void WriteReport(const Results& results, const fs::path& directory, const std::function<void(double)>& progress) {
+  CheckReportDirectory(directory);
+  const fs::path target = Normal(directory);
+  RemoveStale(target);
+  PartialFolder partial(target);
+
+  Json page = ResultsObject(results);
+  std::vector<Job> jobs;
+  std::set<std::string> folders;
+  for (std::size_t s = 0; s < results.scenes.size(); ++s) {
+    const SceneResult& scene = results.scenes[s];
+    Json& scene_json = page["scenes"][s];
+    const std::string folder = FileName(scene.name, &folders);
+    scene_json["folder"] = folder;
+    fs::create_directories(partial.path() / "images" / folder);
+    fs::create_directories(partial.path() / "data" / folder);
+    std::set<std::string> stems = {"truth", "emission"};
+    if (scene.truth) jobs.push_back({&scene, scene.truth, folder, "truth"});
+    scene_json["truth"]["stem"] = scene.truth ? Json("truth") : Json(nullptr);
+    for (std::size_t v = 0; v < scene.variants.size(); ++v) {
+      const VariantResult& variant = scene.variants[v];
+      const std::string stem = FileName(variant.name, &stems);
+      scene_json["variants"][v]["stem"] = variant.image ? Json(stem) : Json(nullptr);
+      if (variant.image) jobs.push_back({&scene, variant.image, folder, stem});
+    }
+    scene_json["emission"] = scene.emission != nullptr;
+    if (scene.emission) {
+      auto image = std::make_shared<RadianceImage>();
+      image->width = scene.width;
+      image->height = scene.height;
+      image->diffuse = *scene.emission;
+      image->specular.assign(scene.emission->size(), glm::vec3(0.0f));
+      jobs.push_back({&scene, image, folder, "emission", true});
+    }
+    if (scene.truth) {
+      const std::vector<glm::vec3> total = TotalRadiance(*scene.truth);
+      const double floor = Floor(total);
+      scene_json["floor"] = {{"total", floor}, {"diffuse", Floor(scene.truth->diffuse)}, {"specular", Floor(scene.truth->specular)}};
+      scene_json["scale"] = MapScale(scene, total, floor);
+    } else {
+      scene_json["floor"] = {{"total", 0.0}, {"diffuse", 0.0}, {"specular", 0.0}};
+      scene_json["scale"] = 0.1;
+    }
+  }
+
+  std::mutex mutex;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+    WriteImages(jobs[i], partial.path());
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(jobs.size()));
+  });
+
+  WriteText(partial.path() / "results.json", ResultsJson(results));
+  WriteText(partial.path() / "results.csv", ResultsCsv(results));
+  std::string html(ReportFile("index.html"));
+  html = Substitute(std::move(html), "/*arealab:css*/", ReportFile("report.css"));
+  html = Substitute(std::move(html), "/*arealab:js*/", ReportFile("report.js"));
+  html = Substitute(std::move(html), "{\"arealab\": \"results\"}",
+                    ScriptSafe(page.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  WriteText(partial.path() / "index.html", html);
+  partial.MoveIntoPlace();
+}
+
+}  // namespace arealab

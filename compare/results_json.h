@@ -1,0 +1,12 @@
+// results.json as an object, for those who add to it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "compare/results.h"
+
+namespace arealab {
+
+nlohmann::ordered_json ResultsObject(const Results& results);
+
+}  // namespace arealab
