@@ -11,9 +11,11 @@
 #include "compare/closed_forms.h"
 #include "compare/truth.h"
 #include "compare/truth_levels.h"
+// clang-format off: the order matters
 #include "glsl/dual_begin.h"
-#include "glsl/dual_end.h"
 #include "glsl/polar_rule.glsl"
+#include "glsl/dual_end.h"
+// clang-format on
 
 namespace arealab {
 namespace {
