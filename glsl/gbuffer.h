@@ -27,18 +27,22 @@ class GBuffer {
   GLuint base_color() const { return base_color_.id(); }
 
  private:
+  struct Geometry;  // the scene's triangles and what is drawn of them
+
   void Allocate(glm::ivec2 size);
-  void DrawMesh(const Mesh& mesh);
-  void UseMaterial(const Material& material);
-  void UseTexture(GLuint unit, const std::shared_ptr<const Image>& image, const char* flag);
-  void DrawEmitter(const Light& light, std::size_t index, const glm::dvec3& camera);
-  void ReadBack(glm::ivec2 size);
+  Geometry Gather(const Scene& scene, const glm::dvec3& camera);
+  void DrawCoverage(const Geometry& geometry, glm::ivec2 size);
+  void Resolve(const Geometry& geometry);
+  GLuint Upload(const std::shared_ptr<const Image>& image);
+  void ReadBack();
 
   const GladGLContext& gl_;
-  Program program_;
+  Program coverage_program_;
+  Program resolve_program_;
   GlObject vertex_array_;
-  GlObject framebuffer_;
-  GlObject position_, normal_, base_color_, depth_;
+  GlObject coverage_framebuffer_, framebuffer_;
+  GlObject coverage_, depth_;
+  GlObject position_, normal_, base_color_;
   std::map<std::shared_ptr<const Image>, GlObject> textures_;  // of the scene drawn last
   SurfacePixels pixels_;
 };
