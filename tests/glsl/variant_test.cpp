@@ -1,0 +1,150 @@
+#include "glsl/variant.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <set>
+
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+using testing::ElementsAre;
+
+Option MakeOption(const std::string& name, const std::vector<std::string>& choices) {
+  Option option{name, "", {}};
+  for (const std::string& choice : choices) option.choices.push_back({choice, ""});
+  return option;
+}
+
+// "ltc" with two options and a published form of its own, "plain" with none, "same" published as it is.
+const std::vector<Technique>& Techniques() {
+  static const std::vector<Technique> techniques = [] {
+    Technique ltc;
+    ltc.name = "ltc";
+    ltc.shapes = {LightShape::kRectangle};
+    ltc.options = {MakeOption("edge", {"half", "acos"}), MakeOption("clip", {"arc", "switch", "none"})};
+    ltc.published = {{"edge", "acos"}, {"clip", "switch"}};
+    Technique plain;
+    plain.name = "plain";
+    plain.shapes = {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere};
+    Technique same;
+    same.name = "same";
+    same.shapes = {LightShape::kDisk, LightShape::kSphere};
+    same.options = {MakeOption("way", {"up", "down"})};
+    same.published = {{"way", "up"}};
+    return std::vector<Technique>{ltc, plain, same};
+  }();
+  return techniques;
+}
+
+Variant Parse(const std::string& name) {
+  return ParseVariant(Techniques(), name);
+}
+
+std::string ErrorOf(const std::string& name) {
+  try {
+    Parse(name);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::vector<std::string> NamesOf(const std::vector<Variant>& variants,
+                                 const std::function<std::string(const Variant&)>& name) {
+  std::vector<std::string> names;
+  for (const Variant& variant : variants) names.push_back(name(variant));
+  return names;
+}
+
+TEST(Variant, CanonicalNamesLeaveDefaultsOutAndKeepTheHeadersOrder) {
+  EXPECT_EQ(Parse("ltc").Name(), "ltc");
+  EXPECT_EQ(Parse("ltc+clip=switch").Name(), "ltc+clip=switch");
+  EXPECT_EQ(Parse("ltc+clip=switch+edge=acos").Name(), "ltc+edge=acos+clip=switch");
+  EXPECT_EQ(Parse("ltc+clip=arc+edge=half").Name(), "ltc");
+  EXPECT_EQ(Parse("plain").Name(), "plain");
+}
+
+TEST(Variant, PublishedFormIsShortForItsOptions) {
+  EXPECT_EQ(Parse("ltc@published").Name(), "ltc+edge=acos+clip=switch");
+  EXPECT_EQ(Parse("ltc@published").ShortName(), "ltc@published");
+  EXPECT_EQ(Parse("ltc+clip=switch+edge=acos").ShortName(), "ltc@published");
+  EXPECT_EQ(Parse("ltc@published+edge=half").Name(), "ltc+clip=switch");
+  EXPECT_EQ(Parse("ltc@published+edge=half").ShortName(), "ltc+clip=switch");
+  EXPECT_EQ(Parse("ltc").ShortName(), "ltc");
+}
+
+TEST(Variant, PublishedFormThatIsTheDefaultHasNoNameOfItsOwn) {
+  EXPECT_EQ(Parse("same@published").ShortName(), "same");
+  EXPECT_EQ(Parse("plain@published").ShortName(), "plain");
+  EXPECT_EQ(Parse("same@published"), DefaultVariant(Techniques()[2]));
+}
+
+TEST(Variant, EveryNameIsReadBackAsItself) {
+  for (const Variant& variant : AllVariants(Techniques())) {
+    EXPECT_EQ(Parse(variant.Name()), variant) << variant.Name();
+    EXPECT_EQ(Parse(variant.ShortName()), variant) << variant.ShortName();
+  }
+}
+
+TEST(Variant, AllVariantsAreEveryCombinationOnce) {
+  const std::vector<Variant> variants = AllVariants(Techniques());
+  std::set<std::string> names;
+  for (const Variant& variant : variants) names.insert(variant.Name());
+  EXPECT_EQ(variants.size(), 2u * 3u + 1u + 2u);
+  EXPECT_EQ(names.size(), variants.size());
+}
+
+TEST(Variant, DefaultVariantsShowAPublishedFormWhereItDiffers) {
+  EXPECT_THAT(NamesOf(DefaultVariants(Techniques()), &Variant::ShortName),
+              ElementsAre("ltc", "ltc@published", "plain", "same"));
+}
+
+TEST(Variant, WrongNamesAreRefusedWithWhatExists) {
+  EXPECT_EQ(ErrorOf("ltd"),
+            "variant \"ltd\": unknown technique \"ltd\"; expected ltc, plain, same (did you mean \"ltc\"?)");
+  EXPECT_EQ(ErrorOf("wholly_other"),
+            "variant \"wholly_other\": unknown technique \"wholly_other\"; expected ltc, plain, same");
+  EXPECT_EQ(ErrorOf(""), "variant \"\": unknown technique \"\"; expected ltc, plain, same");
+  EXPECT_EQ(ErrorOf("ltc@author"), "variant \"ltc@author\": unknown form \"@author\"; expected @published");
+  EXPECT_EQ(
+      ErrorOf("ltc+clipp=arc"),
+      "variant \"ltc+clipp=arc\": unknown option \"clipp\"; expected edge, clip (did you mean \"clip\"?)");
+  EXPECT_EQ(ErrorOf("plain+clip=arc"),
+            "variant \"plain+clip=arc\": unknown option \"clip\"; expected none, plain has no options");
+  EXPECT_EQ(ErrorOf("ltc+clip=swich"),
+            "variant \"ltc+clip=swich\": unknown choice \"swich\" of option clip; expected arc, switch, none "
+            "(did you mean \"switch\"?)");
+  EXPECT_EQ(ErrorOf("ltc+clip"), "variant \"ltc+clip\": \"+clip\" chooses nothing; expected +OPTION=CHOICE");
+  EXPECT_EQ(ErrorOf("ltc+"), "variant \"ltc+\": \"+\" chooses nothing; expected +OPTION=CHOICE");
+  EXPECT_EQ(ErrorOf("ltc+clip=arc+clip=none"),
+            "variant \"ltc+clip=arc+clip=none\": option clip is given twice; expected once");
+  EXPECT_EQ(ErrorOf("ltc+clip=arc@published"),
+            "variant \"ltc+clip=arc@published\": \"@published\" is out of place; expected "
+            "TECHNIQUE[@published][+OPTION=CHOICE]…");
+}
+
+Scene SceneWith(LightShape shape, const std::string& name) {
+  Scene scene;
+  scene.lights.resize(2);
+  scene.lights[0].shape = LightShape::kRectangle;
+  scene.lights[1].shape = shape;
+  scene.lights[1].name = name;
+  return scene;
+}
+
+TEST(Variant, UnsupportedShapesAreNamedInASentence) {
+  EXPECT_EQ(WhyUnsupported(Parse("ltc"), SceneWith(LightShape::kRectangle, "lamp")), std::nullopt);
+  EXPECT_EQ(WhyUnsupported(Parse("ltc"), SceneWith(LightShape::kSphere, "lamp")),
+            "ltc shades rectangles; light \"lamp\" is a sphere");
+  EXPECT_EQ(WhyUnsupported(Parse("ltc"), SceneWith(LightShape::kDisk, "")),
+            "ltc shades rectangles; light 2 is a disk");
+  EXPECT_EQ(WhyUnsupported(Parse("same"), SceneWith(LightShape::kDisk, "")),
+            "same shades disks and spheres; light 1 is a rectangle");
+  EXPECT_EQ(WhyUnsupported(Parse("plain"), SceneWith(LightShape::kSphere, "lamp")), std::nullopt);
+}
+
+}  // namespace
+}  // namespace arealab
