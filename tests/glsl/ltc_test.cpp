@@ -1,0 +1,141 @@
+// The LTC shaders' frame, look-up and transform, in double, and that they read the tables as the fit wrote
+// them.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "glsl/fit.h"
+
+#include "glsl/dual_begin.h"
+
+#include "glsl/ltc.glsl"
+
+namespace polygon {
+#include "glsl/fit/polygon.glsl"
+}
+namespace cosine {
+#include "glsl/fit/cosine.glsl"
+}
+namespace l3 {
+#include "glsl/fit/l3.glsl"
+}
+#include "glsl/edge/acos.glsl"
+namespace clipped {
+#include "glsl/clip/arc.glsl"
+}
+
+#include "glsl/dual_end.h"
+
+namespace arealab {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+using glm::dvec4;
+
+dvec3 RandomDirection(std::mt19937_64& engine) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (;;) {
+    const dvec3 v(uniform(engine), uniform(engine), uniform(engine));
+    const double length = glm::length(v);
+    if (length > 0.01 && length < 1.0) return v / length;
+  }
+}
+
+TEST(Ltc, FrameIsOrthonormalAndFacesTheViewer) {
+  std::mt19937_64 engine(1);
+  for (int i = 0; i < 2000; ++i) {
+    const dvec3 normal = RandomDirection(engine);
+    dvec3 to_view = RandomDirection(engine);
+    if (i % 4 == 1) to_view = normal;
+    if (i % 4 == 2) to_view = glm::normalize(normal + std::pow(0.1, i % 12) * to_view);
+    if (glm::dot(normal, to_view) < 0.0) to_view = -to_view;
+    const dual::ShadingFrame frame = dual::MakeShadingFrame(normal, to_view);
+    EXPECT_NEAR(glm::length(frame.tangent), 1.0, 1e-12);
+    EXPECT_NEAR(glm::length(frame.bitangent), 1.0, 1e-9);
+    EXPECT_NEAR(glm::dot(frame.tangent, normal), 0.0, 1e-9);
+    EXPECT_NEAR(glm::dot(frame.tangent, frame.bitangent), 0.0, 1e-12);
+    EXPECT_GT(glm::dot(glm::cross(frame.tangent, frame.bitangent), normal), 0.999);
+    EXPECT_GE(glm::dot(frame.tangent, to_view), -1e-4);
+  }
+}
+
+TEST(Ltc, MirrorFrameStorageTurnsBack) {
+  const double c = 0.3, s = std::sqrt(1.0 - c * c);
+  const dvec4 m(1.7, -0.2, 0.4, 0.9);  // m0, m1, m2, m3
+  const dvec4 stored(m[0] * c + m[2] * s, m[1] * c + m[3] * s, m[2] * c - m[0] * s, m[3] * c - m[1] * s);
+  EXPECT_LT(glm::length(dual::FromMirrorFrame(stored, c) - m), 1e-15);
+}
+
+// With the identity the transformed cosine is the clamped cosine, and nothing else than the Lambert form
+// factor may come out.
+TEST(Ltc, IdentityIsTheClampedCosine) {
+  std::mt19937_64 engine(2);
+  std::uniform_real_distribution<double> uniform(0.1, 2.0);
+  for (int i = 0; i < 2000; ++i) {
+    dual::Light light;
+    light.center = 2.0 * RandomDirection(engine);
+    light.normal = RandomDirection(engine);
+    if (glm::dot(light.normal, light.center) > 0.0) light.normal = -light.normal;
+    light.axis_x = glm::normalize(glm::cross(light.normal, RandomDirection(engine)));
+    light.axis_y = glm::cross(light.normal, light.axis_x);
+    light.half_size = {uniform(engine), uniform(engine)};
+    light.half_axis_x = light.axis_x * light.half_size.x;
+    light.half_axis_y = light.axis_y * light.half_size.y;
+    const dual::ShadingFrame frame = dual::MakeShadingFrame(RandomDirection(engine), RandomDirection(engine));
+    const auto view = dual::ViewRectangle(light, dvec3(0.0), frame.tangent, frame.bitangent, frame.normal);
+    const dvec4 identity(1.0, 0.0, 0.0, 1.0);
+    const double lobe = dual::clipped::ClippedFormFactor(dual::LtcTransform(identity, view.center),
+                                                         dual::LtcTransform(identity, view.half_a),
+                                                         dual::LtcTransform(identity, view.half_b));
+    EXPECT_NEAR(lobe, dual::clipped::ClippedLambert(view), 2e-8);  // acos near 1; measured 3.4e-9
+  }
+}
+
+TEST(Ltc, ReflectanceBetweenF0AndOne) {
+  const dvec4 terms(0.9, 0.1, 0.0, 0.0);
+  EXPECT_NEAR(dual::LtcReflectance(dvec3(1.0), terms).x, 0.9, 1e-15);
+  EXPECT_NEAR(dual::LtcReflectance(dvec3(0.0), terms).x, 0.1, 1e-15);
+  EXPECT_NEAR(dual::LtcReflectance(dvec3(0.04), terms).x, 0.04 * 0.8 + 0.1, 1e-15);
+}
+
+// As a sampler does it: bilinear, clamped to the edge, texel (i, j)'s centre at (i + ½, j + ½) / size.
+dvec4 Sample(const std::vector<glm::vec4>& texels, int size, dvec2 uv) {
+  const dvec2 p = glm::clamp(uv * double(size) - 0.5, dvec2(0.0), dvec2(size - 1.0));
+  const glm::ivec2 low(p), high = glm::min(low + 1, glm::ivec2(size - 1));
+  const dvec2 f = p - dvec2(low);
+  const auto at = [&](int x, int y) { return dvec4(texels[static_cast<std::size_t>(y * size + x)]); };
+  return glm::mix(glm::mix(at(low.x, low.y), at(high.x, low.y), f.x),
+                  glm::mix(at(low.x, high.y), at(high.x, high.y), f.x), f.y);
+}
+
+TEST(Ltc, TablesAreReadAsTheFitWroteThem) {
+  const auto check = [](FitKind kind, auto position, auto unpack) {
+    const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", kind);
+    ASSERT_EQ(tables.size, 64);  // TableCoordinates takes it for granted
+    std::mt19937_64 engine(3);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (int i = 0; i < 1000; ++i) {
+      const double roughness = uniform(engine), cosine = std::max(uniform(engine), dual::kMinViewCosine);
+      const LtcLookup expected = Look(tables, roughness, cosine);
+      const dvec2 uv = dual::TableCoordinates(roughness, position(cosine));
+      const dvec4 m = unpack(Sample(tables.matrix, tables.size, uv), cosine);
+      EXPECT_LT(glm::length(m - expected.m), 1e-9 * glm::length(m)) << roughness << ' ' << cosine;
+      EXPECT_LT(glm::length(Sample(tables.terms, tables.size, uv) - expected.terms), 1e-9);
+      // Facing is kept, and with it the polygon's order.
+      EXPECT_GT(m.x * m.w - m.y * m.z, 0.0) << roughness << ' ' << cosine;
+    }
+  };
+  check(FitKind::kPolygon, dual::polygon::LtcViewPosition, dual::polygon::LtcUnpack);
+  check(FitKind::kCosine, dual::cosine::LtcViewPosition, dual::cosine::LtcUnpack);
+  check(FitKind::kPublished, dual::l3::LtcViewPosition, dual::l3::LtcUnpack);
+}
+
+TEST(Ltc, CosineLobeAddsTheFormFactorAndStaysALobe) {
+  EXPECT_EQ(dual::polygon::LtcLobe(0.4, 0.2, dvec4(1.0, 0.0, 0.5, 0.0)), 0.4);
+  EXPECT_NEAR(dual::cosine::LtcLobe(0.4, 0.2, dvec4(1.0, 0.0, 0.5, 0.0)), 0.5, 1e-15);
+  EXPECT_EQ(dual::cosine::LtcLobe(0.0, 0.2, dvec4(1.0, 0.0, -0.5, 0.0)), 0.0);
+}
+
+}  // namespace
+}  // namespace arealab

@@ -1,0 +1,360 @@
+// The rectangle's form factor, clipped in every way that the techniques offer, in double, against a polygon
+// clipper and an edge integral written here.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <vector>
+
+#include "glsl/dual_begin.h"
+#include "glsl/polygon.glsl"
+namespace half_angle {
+#include "glsl/edge/half_angle.glsl"
+namespace arc {
+#include "glsl/clip/arc.glsl"
+}
+namespace switched {
+#include "glsl/clip/switch.glsl"
+}
+namespace none {
+#include "glsl/clip/none.glsl"
+}
+namespace proxy {
+#include "glsl/sphere/exact.glsl"
+#include "glsl/vector_form_factor.glsl"
+}  // namespace proxy
+namespace fitted {
+#include "glsl/sphere/fit.glsl"
+#include "glsl/vector_form_factor.glsl"
+}  // namespace fitted
+}  // namespace half_angle
+namespace rational {
+#include "glsl/edge/rational.glsl"
+namespace arc {
+#include "glsl/clip/arc.glsl"
+}
+namespace switched {
+#include "glsl/clip/switch.glsl"
+}
+}  // namespace rational
+namespace exact {
+#include "glsl/edge/acos.glsl"
+namespace arc {
+#include "glsl/clip/arc.glsl"
+}
+namespace switched {
+#include "glsl/clip/switch.glsl"
+}
+namespace proxy {
+#include "glsl/sphere/exact.glsl"
+#include "glsl/vector_form_factor.glsl"
+}  // namespace proxy
+}  // namespace exact
+#include "glsl/dual_end.h"
+
+namespace arealab {
+namespace {
+
+using dual::Light;
+using dual::RectangleView;
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr double kPi = glm::pi<double>();
+
+// The polygon's part with z > 0 [Sutherland & Hodgman 1974].
+std::vector<dvec3> ClipAbove(const std::vector<dvec3>& polygon) {
+  std::vector<dvec3> clipped;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const dvec3 from = polygon[i], to = polygon[(i + 1) % polygon.size()];
+    if (from.z > 0.0) clipped.push_back(from);
+    if ((from.z > 0.0) != (to.z > 0.0)) clipped.push_back(from + (to - from) * (from.z / (from.z - to.z)));
+  }
+  return clipped;
+}
+
+// Lambert's edge sum, with the angle by atan2.
+dvec3 VectorOf(const std::vector<dvec3>& polygon) {
+  dvec3 sum(0.0);
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const dvec3 a = glm::normalize(polygon[i]), b = glm::normalize(polygon[(i + 1) % polygon.size()]);
+    const dvec3 c = glm::cross(a, b);
+    const double sine = glm::length(c);
+    if (sine > 0.0) sum += c / sine * std::atan2(sine, glm::dot(a, b));
+  }
+  return sum / (2.0 * kPi);
+}
+
+struct Case {
+  dvec3 center, a, b;  // half_a × half_b towards the origin
+
+  std::vector<dvec3> Corners() const {  // counter-clockwise seen from the origin
+    return {center + a + b, center + a - b, center - a - b, center - a + b};
+  }
+  double Expected() const { return VectorOf(ClipAbove(Corners())).z; }
+  int CornersAbove() const {
+    int bits = 0;
+    for (std::size_t i = 0; i < 4; ++i) bits |= (Corners()[i].z > 0.0 ? 1 : 0) << i;
+    return bits;
+  }
+  // Distance of the origin from the nearest edge's line, over the longest side: near 0 the form factor jumps.
+  double EdgeDistance() const {
+    const auto corners = Corners();
+    double least = 1e300;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const dvec3 side = corners[(i + 1) % 4] - corners[i];
+      least = std::min(least, glm::length(glm::cross(side, corners[i])) / glm::dot(side, side));
+    }
+    return least;
+  }
+};
+
+class Random {
+ public:
+  double operator()(double from, double to) { return from + (to - from) * uniform_(engine_); }
+  double Log(double from, double to) { return from * std::pow(to / from, uniform_(engine_)); }
+  dvec3 Direction() {
+    const double z = (*this)(-1.0, 1.0), phi = (*this)(0.0, 2.0 * kPi), r = std::sqrt(1.0 - z * z);
+    return {r * std::cos(phi), r * std::sin(phi), z};
+  }
+
+ private:
+  std::mt19937_64 engine_{20261};
+  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+};
+
+// A rectangle of any size, place and orientation, and its light block.
+struct RandomRectangle {
+  Case seen;
+  RectangleView view;
+};
+RandomRectangle MakeRectangle(Random& random) {
+  const dvec3 center = random.Direction();
+  dvec3 normal = random.Direction();
+  if (glm::dot(normal, center) > 0.0) normal = -normal;
+  const dvec3 axis_x = glm::normalize(glm::cross(normal, random.Direction()));
+  const dvec3 axis_y = glm::cross(normal, axis_x);
+  const dvec2 half_size(random.Log(0.01, 30.0), random.Log(0.01, 30.0));
+  Light light;
+  light.center = center;
+  light.normal = normal;
+  light.axis_x = axis_x;
+  light.axis_y = axis_y;
+  light.half_axis_x = axis_x * half_size.x;
+  light.half_axis_y = axis_y * half_size.y;
+  light.half_size = half_size;
+  RandomRectangle result;
+  result.seen = {center, light.half_axis_x, light.half_axis_y};
+  result.view = dual::ViewRectangle(light, dvec3(0.0), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
+  return result;
+}
+
+// A parallelogram, as an LTC's transform leaves it: sheared, flattened.
+Case Transformed(Random& random, const Case& seen) {
+  const glm::dmat3 m(random.Log(0.3, 3.0), 0.0, random(-1.0, 1.0), 0.0, 1.0, 0.0, random(-1.0, 1.0), 0.0,
+                     random.Log(0.01, 3.0));
+  if (glm::determinant(m) <= 0.0) return seen;
+  return {m * seen.center, m * seen.a, m * seen.b};
+}
+
+struct Worst {
+  double error = 0.0;
+  double square_sum = 0.0, expected_square_sum = 0.0;
+  void Add(double got, double expected) {
+    ASSERT_TRUE(std::isfinite(got));
+    ASSERT_GE(got, 0.0);
+    ASSERT_LE(got, 1.0);
+    error = std::max(error, std::abs(got - expected));
+    square_sum += (got - expected) * (got - expected);
+    expected_square_sum += expected * expected;
+  }
+  double RelativeRmse() const { return std::sqrt(square_sum / expected_square_sum); }
+};
+
+TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
+  Random random;
+  Worst arc_lambert, arc, exact_arc_lambert, exact_arc, switched, exact_switched, rational_arc,
+      rational_switched;
+  std::array<int, 16> patterns{};
+  for (int i = 0; i < 100000; ++i) {
+    const RandomRectangle rectangle = MakeRectangle(random);
+    const double lambert = rectangle.seen.Expected();
+    arc_lambert.Add(dual::half_angle::arc::ClippedLambert(rectangle.view), lambert);
+    exact_arc_lambert.Add(dual::exact::arc::ClippedLambert(rectangle.view), lambert);
+    const Case c = Transformed(random, rectangle.seen);
+    const double expected = c.Expected();
+    ++patterns[static_cast<std::size_t>(c.CornersAbove())];
+    arc.Add(dual::half_angle::arc::ClippedFormFactor(c.center, c.a, c.b), expected);
+    exact_arc.Add(dual::exact::arc::ClippedFormFactor(c.center, c.a, c.b), expected);
+    switched.Add(dual::half_angle::switched::ClippedFormFactor(c.center, c.a, c.b), expected);
+    exact_switched.Add(dual::exact::switched::ClippedFormFactor(c.center, c.a, c.b), expected);
+    rational_arc.Add(dual::rational::arc::ClippedFormFactor(c.center, c.a, c.b), expected);
+    rational_switched.Add(dual::rational::switched::ClippedFormFactor(c.center, c.a, c.b), expected);
+  }
+  for (int pattern = 0; pattern < 16; ++pattern) {
+    const bool possible = pattern != 5 && pattern != 10;
+    EXPECT_EQ(patterns[static_cast<std::size_t>(pattern)] > 0, possible) << "corners above: " << pattern;
+  }
+  // What the language's arc cosine leaves is rounding near π; measured 4.7e-9, 4.1e-9 and, through the side
+  // in the horizon, 1.8e-5.
+  EXPECT_LT(exact_arc_lambert.error, 1e-7);
+  EXPECT_LT(exact_arc.error, 1e-7);
+  EXPECT_LT(exact_switched.error, 1e-4);
+  // The polynomial's 2.9e-6; measured 2.7e-6, 2.7e-6, 1.7e-5.
+  EXPECT_LT(arc_lambert.error, 6e-6);
+  EXPECT_LT(arc.error, 6e-6);
+  EXPECT_LT(switched.error, 1e-4);
+  // The rational fit needs the arc's own closing angle: measured 4.3e-7. In the switch its clamp breaks the
+  // side in the horizon, which nears π as the point nears the light's plane: measured 0.50, relative RMSE
+  // 0.021. Published so; if it heals, it is not theirs.
+  EXPECT_LT(rational_arc.error, 1e-6);
+  EXPECT_GT(rational_switched.error, 0.4);
+  EXPECT_GT(rational_switched.RelativeRmse(), 0.01);
+  EXPECT_LT(rational_switched.RelativeRmse(), 0.04);
+}
+
+TEST(Polygon, VectorFormFactorOfRandomRectangles) {
+  Random random;
+  Worst size, height, lambert_size, lambert_height, half_angle_size;
+  for (int i = 0; i < 100000; ++i) {
+    const RandomRectangle rectangle = MakeRectangle(random);
+    const Case c = Transformed(random, rectangle.seen);
+    const dvec3 expected = VectorOf(c.Corners());
+    const auto f = dual::exact::proxy::ParallelogramVector(c.center, c.a, c.b);
+    size.Add(std::min(f.size, 1.0), glm::length(expected));
+    height.Add(0.5 + 0.5 * glm::clamp(f.height, -1.0, 1.0), 0.5 + 0.5 * expected.z);
+    const dvec3 expected_lambert = VectorOf(rectangle.seen.Corners());
+    const auto lambert = dual::exact::proxy::LambertVector(rectangle.view);
+    lambert_size.Add(std::min(lambert.size, 1.0), glm::length(expected_lambert));
+    lambert_height.Add(0.5 + 0.5 * glm::clamp(lambert.height, -1.0, 1.0), 0.5 + 0.5 * expected_lambert.z);
+    half_angle_size.Add(std::min(dual::half_angle::proxy::ParallelogramVector(c.center, c.a, c.b).size, 1.0),
+                        glm::length(expected));
+    // Wholly above the horizon the proxy is not asked: both techniques give F_z.
+    if (c.CornersAbove() == 15 &&
+        expected.z * expected.z > glm::length(expected) * glm::dot(expected, expected)) {
+      EXPECT_NEAR(dual::exact::proxy::ClippedProxy(f),
+                  dual::exact::arc::ClippedFormFactor(c.center, c.a, c.b), 1e-6);
+    }
+  }
+  EXPECT_LT(size.error, 1e-8);  // measured 3.4e-10, 1.6e-10, 9.9e-11, 4.6e-11
+  EXPECT_LT(height.error, 1e-8);
+  EXPECT_LT(lambert_size.error, 1e-8);
+  EXPECT_LT(lambert_height.error, 1e-8);
+  EXPECT_LT(half_angle_size.error, 6e-6);  // the polynomial's 2.9e-6; measured 2.8e-6
+}
+
+// A sphere's form factor above the horizon by integrating its disk of directions, in bands of height.
+double SphereByQuadrature(double size, double y) {
+  // Directions of the cap of half angle σ about (√(1 − y²), 0, y): ring of polar angle t about the centre.
+  const double sigma = std::asin(std::sqrt(size)), sine = std::sqrt(1.0 - y * y);
+  constexpr int kRings = 4000;
+  double sum = 0.0;
+  for (int i = 0; i < kRings; ++i) {
+    const double t = (i + 0.5) / kRings * sigma;
+    // z = y cos t + sine sin t cos φ, positive for φ < limit.
+    const double level = y * std::cos(t), swing = sine * std::sin(t);
+    const double limit = level >= swing ? kPi : level <= -swing ? 0.0 : std::acos(-level / swing);
+    sum += 2.0 * (level * limit + swing * std::sin(limit)) * std::sin(t) * sigma / kRings;
+  }
+  return sum / kPi;
+}
+
+TEST(Polygon, ClippedSphere) {
+  double exact_error = 0.0, fit_error = 0.0, fit_sum = 0.0;
+  int count = 0;
+  for (int i = 1; i <= 40; ++i) {
+    for (int j = -40; j <= 40; ++j) {
+      const double size = i / 40.0, y = j / 40.0;
+      const double expected = SphereByQuadrature(size, y);
+      exact_error = std::max(exact_error, std::abs(dual::exact::proxy::ClippedSphere(size, y) - expected));
+      const double error = std::abs(dual::half_angle::fitted::ClippedSphere(size, y) - expected);
+      fit_error = std::max(fit_error, error);
+      fit_sum += error;
+      ++count;
+    }
+  }
+  EXPECT_LT(exact_error, 1e-7);       // the quadrature's own; measured 2.6e-8
+  EXPECT_LT(fit_error, 0.0115);       // measured 0.0100
+  EXPECT_LT(fit_sum / count, 0.002);  // measured 0.00167
+}
+
+// Seen from straight below a corner of a rectangle parallel to the surface, and the corner at the foot of one
+// perpendicular to it [Hamilton & Morgan 1952, configurations P-1 and P-3].
+TEST(Polygon, FormFactorOfParallelAndPerpendicularRectangle) {
+  for (const double width : {1e-3, 0.1, 1.0, 7.0, 1e3}) {
+    for (const double length : {1e-3, 0.3, 1.0, 20.0}) {
+      const double u = std::sqrt(1.0 + width * width), v = std::sqrt(1.0 + length * length);
+      const double parallel =
+          (width / u * std::atan(length / u) + length / v * std::atan(width / v)) / (2.0 * kPi);
+      const Case above{{0.5 * width, 0.5 * length, 1.0}, {0.5 * width, 0.0, 0.0}, {0.0, -0.5 * length, 0.0}};
+      // acos(1 − 1e-16) is 1.5e-8: what the closing side of no length may add.
+      EXPECT_NEAR(dual::exact::arc::ClippedFormFactor(above.center, above.a, above.b), parallel, 1e-8);
+      EXPECT_NEAR(dual::half_angle::arc::ClippedFormFactor(above.center, above.a, above.b) / parallel, 1.0,
+                  1e-5);
+      // The wall x = 1, y from 0 to width, z from 0 to length.
+      const double far = std::sqrt(1.0 + length * length);
+      const double perpendicular = (std::atan(width) - std::atan(width / far) / far) / (2.0 * kPi);
+      const Case wall{{1.0, 0.5 * width, 0.5 * length}, {0.0, 0.5 * width, 0.0}, {0.0, 0.0, -0.5 * length}};
+      EXPECT_NEAR(dual::exact::arc::ClippedFormFactor(wall.center, wall.a, wall.b), perpendicular, 1e-8);
+      EXPECT_NEAR(dual::half_angle::switched::ClippedFormFactor(wall.center, wall.a, wall.b), perpendicular,
+                  3e-6 * perpendicular + 1e-12);
+    }
+  }
+}
+
+TEST(Polygon, FormFactorOfHalfSpaceIsOneAndOfAnEndlessWallIsHalf) {
+  const dvec3 a(1e6, 0.0, 0.0), b(0.0, -1e6, 0.0);
+  EXPECT_NEAR(dual::half_angle::arc::ClippedFormFactor({0.0, 0.0, 1.0}, a, b), 1.0, 5e-6);
+  EXPECT_NEAR(dual::half_angle::arc::ClippedFormFactor({1.0, 0.0, 0.0}, b, dvec3(0.0, 0.0, 1e6)), 0.5, 5e-6);
+  EXPECT_NEAR(dual::half_angle::proxy::ClippedProxy(
+                  dual::half_angle::proxy::ParallelogramVector({0.0, 0.0, 1.0}, a, b)),
+              1.0, 5e-6);
+}
+
+// Points on the light's plane, edges and corners, lights level with the horizon, of no size, tiny and huge.
+TEST(Polygon, DegenerateInputsStayFormFactors) {
+  int count = 0;
+  for (const double scale : {1e-9, 1e-4, 1.0, 1e4, 1e8}) {
+    for (const double height : {-1.0, -1e-9, 0.0, 1e-9, 1.0}) {
+      for (const double along : {-1.0, -0.5, 0.0, 0.5, 1.0, 2.0}) {
+        for (const double tilt : {0.0, 0.25 * kPi, 0.5 * kPi, kPi}) {
+          for (const double width : {0.0, 1e-6, 1.0}) {
+            const double c = std::cos(tilt), s = std::sin(tilt);
+            const dvec3 normal(s, 0.0, -c);
+            Light light;
+            light.axis_x = dvec3(c, 0.0, s);
+            light.axis_y = glm::cross(normal, light.axis_x);
+            light.normal = normal;
+            light.half_size = scale * dvec2(width, 1.0);
+            light.half_axis_x = light.axis_x * light.half_size.x;
+            light.half_axis_y = light.axis_y * light.half_size.y;
+            light.center =
+                -normal * std::abs(height) * scale + along * (light.half_axis_x + light.half_axis_y);
+            light.center.z += height < 0.0 ? height * scale : 0.0;
+            const RectangleView view =
+                dual::ViewRectangle(light, dvec3(0.0), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
+            for (const double value :
+                 {dual::half_angle::arc::ClippedLambert(view), dual::rational::arc::ClippedLambert(view),
+                  dual::exact::arc::ClippedLambert(view),
+                  dual::half_angle::arc::ClippedFormFactor(view.center, view.half_a, view.half_b),
+                  dual::half_angle::switched::ClippedLambert(view),
+                  dual::rational::switched::ClippedLambert(view), dual::exact::switched::ClippedLambert(view),
+                  dual::half_angle::none::ClippedLambert(view),
+                  dual::half_angle::proxy::ClippedProxy(dual::half_angle::proxy::LambertVector(view)),
+                  dual::half_angle::fitted::ClippedProxy(dual::half_angle::fitted::ParallelogramVector(
+                      view.center, view.half_a, view.half_b))}) {
+              ASSERT_TRUE(value >= 0.0 && value <= 1.0)
+                  << value << " at scale " << scale << " height " << height << " along " << along << " tilt "
+                  << tilt << " width " << width;
+              ++count;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(count, 5 * 5 * 6 * 4 * 3 * 10);
+}
+
+}  // namespace
+}  // namespace arealab
