@@ -23,7 +23,18 @@ std::shared_ptr<const Image> Read(const std::string& file, const std::string& na
                                   OIIO::Filesystem::IOProxy* memory) {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // glTF and artists keep colour and alpha apart
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file, &config, memory);
+  std::unique_ptr<OIIO::ImageInput> input;
+  if (memory) {
+    // OpenImageIO 2.4's one-step open looks for the file on disk in spite of the memory that it is given.
+    input = OIIO::ImageInput::create(file, false, nullptr, memory);
+    OIIO::ImageSpec opened;
+    if (input && !(input->set_ioproxy(memory) && input->open(file, opened, config))) {
+      input->geterror();  // an unread message would be printed
+      input.reset();
+    }
+  } else {
+    input = OIIO::ImageInput::open(file, &config);
+  }
   if (!input) {
     OIIO::geterror();  // clears the library's pending message
     throw InputError(

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "tests/scenes/scene_folder.h"
+
+namespace arealab {
+namespace {
+
+constexpr double kPi = glm::pi<double>();
+
+class LightTest : public SceneFolder {
+ protected:
+  // The light that `lines` describe.
+  Light Read(const std::string& lines, const std::string& units = "radiometric") const {
+    return Load(fmt::format("units = \"{}\"\n", units) + kCamera + kMaterial + kSurface + "[[light]]\n" +
+                lines)
+        .lights.at(0);
+  }
+};
+
+void ExpectRightHanded(const Light& light) {
+  EXPECT_NEAR(glm::length(light.axis_x), 1.0, 1e-12);
+  EXPECT_NEAR(glm::length(light.axis_y), 1.0, 1e-12);
+  EXPECT_NEAR(glm::length(light.normal), 1.0, 1e-12);
+  EXPECT_NEAR(glm::dot(light.axis_x, light.axis_y), 0.0, 1e-12);
+  EXPECT_LT(glm::length(glm::cross(light.axis_x, light.axis_y) - light.normal), 1e-12);
+}
+
+const std::string kRectangle = "shape = \"rectangle\"\nposition = [1.0, 2.0, 3.0]\nsize = [4.0, 0.5]\n";
+const std::string kDisk = "shape = \"disk\"\nposition = [1.0, 2.0, 3.0]\nradius = 0.25\n";
+const std::string kSphere = "shape = \"sphere\"\nposition = [1.0, 2.0, 3.0]\nradius = 0.25\n";
+const std::string kAimed = "target = [0.0, 0.0, 0.0]\n";
+
+TEST_F(LightTest, AreaAndFluxOfUnitRadianceAreTheClosedForms) {
+  const std::string unit = "radiance = 1.0\n";
+  const std::string both = "two_sided = true\n";
+  EXPECT_NEAR(Read(kRectangle + kAimed + unit).Flux(), kPi * 2.0, 1e-14);
+  EXPECT_NEAR(Read(kRectangle + kAimed + unit + both).Flux(), kPi * 4.0, 1e-14);
+  EXPECT_NEAR(Read(kDisk + kAimed + unit).Flux(), kPi * kPi * 0.0625, 1e-14);
+  EXPECT_NEAR(Read(kDisk + kAimed + unit + both).Flux(), 2.0 * kPi * kPi * 0.0625, 1e-14);
+  EXPECT_NEAR(Read(kSphere + unit).Flux(), 4.0 * kPi * kPi * 0.0625, 1e-14);
+  EXPECT_NEAR(Read(kSphere + unit).Area(), 4.0 * kPi * 0.0625, 1e-14);
+}
+
+TEST_F(LightTest, FluxComesBackThroughRadiance) {
+  for (const std::string& shape : {kRectangle + kAimed, kRectangle + kAimed + "two_sided = true\n",
+                                   kDisk + kAimed, kDisk + kAimed + "two_sided = true\n", kSphere}) {
+    for (const std::string color : {"", "color = [1.0, 0.5, 0.1]\n", "color = [0.0, 0.0, 7.0]\n"}) {
+      EXPECT_NEAR(Read(shape + color + "flux = 123.0\n").Flux(), 123.0, 1e-11);
+      EXPECT_NEAR(Read(shape + color + "luminous_flux = 800.0\n", "photometric").Flux(), 800.0, 1e-10);
+    }
+  }
+}
+
+TEST_F(LightTest, ColorGivesTheHueAndRadianceTheLuminance) {
+  const Light light = Read(kSphere + "color = [1.0, 0.5, 0.25]\nradiance = 3.0\n");
+  EXPECT_NEAR(Luminance(light.radiance), 3.0, 1e-14);
+  EXPECT_NEAR(light.radiance.g / light.radiance.r, 0.5, 1e-15);
+  EXPECT_NEAR(light.radiance.b / light.radiance.r, 0.25, 1e-15);
+  EXPECT_EQ(Read(kSphere + "radiance = [1.0, 0.0, 0.25]\n").radiance, glm::dvec3(1.0, 0.0, 0.25));
+  EXPECT_EQ(Read(kSphere + "luminance = [5.0, 6.0, 7.0]\n", "photometric").radiance,
+            glm::dvec3(5.0, 6.0, 7.0));
+  EXPECT_NEAR(Luminance(glm::dvec3(1.0)), 1.0, 1e-15);
+}
+
+TEST_F(LightTest, TargetTurnsTheLitSideThere) {
+  const Light light = Read(kRectangle + kAimed + "radiance = 1.0\n");
+  ExpectRightHanded(light);
+  EXPECT_EQ(light.center, glm::dvec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(light.half_size, glm::dvec2(2.0, 0.25));
+  EXPECT_LT(glm::length(light.normal + glm::normalize(light.center)), 1e-14);
+  EXPECT_NEAR(light.axis_x.z, 0.0, 1e-15);  // level, since up is z
+  EXPECT_GT(light.axis_y.z, 0.0);
+}
+
+TEST_F(LightTest, NormalAndUpGiveTheTurn) {
+  const Light light = Read(kDisk + "normal = [0.0, -3.0, 0.0]\nup = [1.0, 1.0, 0.0]\nradiance = 1.0\n");
+  ExpectRightHanded(light);
+  EXPECT_EQ(light.half_size, glm::dvec2(0.25));
+  EXPECT_LT(glm::length(light.normal - glm::dvec3(0, -1, 0)), 1e-15);
+  EXPECT_LT(glm::length(light.axis_y - glm::dvec3(1, 0, 0)), 1e-15);
+}
+
+TEST_F(LightTest, FacingStraightDownTakesYForUp) {
+  const Light light = Read(kRectangle + "normal = [0.0, 0.0, -1.0]\nradiance = 1.0\n");
+  ExpectRightHanded(light);
+  EXPECT_LT(glm::length(light.axis_y - glm::dvec3(0, 1, 0)), 1e-15);
+}
+
+TEST_F(LightTest, RotationTurnsALightThatFacesUp) {
+  const Light level = Read(kRectangle + "rotation = [0.0, 0.0, 0.0]\nradiance = 1.0\n");
+  ExpectRightHanded(level);
+  EXPECT_EQ(level.normal, glm::dvec3(0, 0, 1));
+  const Light turned = Read(kRectangle + "rotation = [90.0, 0.0, 30.0]\nradiance = 1.0\n");
+  ExpectRightHanded(turned);
+  EXPECT_LT(glm::length(turned.normal - glm::dvec3(0.5, -std::sqrt(0.75), 0.0)), 1e-15);
+  ExpectRightHanded(Read(kRectangle + "rotation = [12345.6, -7.8, 91.2]\nradiance = 1.0\n"));
+}
+
+TEST_F(LightTest, LightsWithoutNamesAreNumbered) {
+  const Scene scene = Load(kCamera + kMaterial + kSurface + "[[light]]\n" + kSphere +
+                           "flux = 1\n[[light]]\n" + kSphere + "flux = 2\n");
+  EXPECT_EQ(scene.lights[0].name, "light 1");
+  EXPECT_EQ(scene.lights[1].name, "light 2");
+}
+
+}  // namespace
+}  // namespace arealab
