@@ -1,10 +1,8 @@
 #include "glsl/variant.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "glsl/nearest.h"
 #include "scenes/error.h"
