@@ -56,83 +56,85 @@ const GaussRule& Gauss(int count) {
   return rules[static_cast<std::size_t>(count)];
 }
 
-// Where an arc is sampled densely, t = center + width·tan ϑ with ϑ between the ends, uniformly in tan of a
-// half angle.
+// A stretch of an arc, t = center + width·sinh u with u from u0 to u1.
 struct Panel {
-  const Arc* arc;
-  double t0, t1, center, width;
-  // (1, (t_i − center)/width) normalised, their mean direction, and tan of a quarter of the angle between
-  // them.
-  double middle_cos, middle_sin, reach, range;
+  int arc;
+  double center, width, u0, u1;
 };
 
-Panel MakePanel(const Arc& arc, double t0, double t1, double center, double width) {
-  Panel panel{&arc, t0, t1, center, width, 1.0, 0.0, 0.0, 0.0};
-  double a0 = (t0 - center) / width, a1 = (t1 - center) / width;
-  double c0 = 1.0 / std::sqrt(1.0 + a0 * a0), c1 = 1.0 / std::sqrt(1.0 + a1 * a1);
-  double mx = c0 + c1, my = a0 * c0 + a1 * c1;
-  double length = std::sqrt(mx * mx + my * my);
-  panel.middle_cos = mx / length;
-  panel.middle_sin = my / length;
-  double sine =
-      (a1 - a0) * c0 * c1 / length;  // sin of half the angle: sin(2x) / (2 cos x), cos x = length / 2
-  panel.reach = sine / (1.0 + 0.5 * length);
-  panel.range = 2.0 * std::atan2(sine, 0.5 * length);
-  return panel;
-}
-
-// The outline of the visible part of a light, in panels, and the ring that the rays start from.
+// The outline of the visible part of a light, in panels, and the center of the rays.
 struct Outline {
-  std::array<Arc, 8> arcs;
+  static constexpr int kMaxArcs = 12;
+  std::array<Arc, kMaxArcs> arcs;
   int arc_count = 0;
-  std::array<Panel, 40> panels;
+  std::array<Panel, 3 * kMaxArcs> panels;
   int panel_count = 0;
-  double ring_slope = 0.0;
+  dual::vec2 center{0.0};
+  double scale = 1.0;  // b: √(α² + |center|²)
+  double reach = 0.0;  // y of the farthest sample of the outline
 };
 
-// Outer nodes in batches: the inner loop runs over them.
+// Rays in batches: the inner loop runs over them. A node has r = origin + scale·p(reach·x).
 struct Batch {
   static constexpr int kSize = 64;
-  alignas(64) std::array<double, kSize> cos_phi, reach, crowd, weight, sum, sum_grazing;
+  alignas(64) std::array<double, kSize> direction_x, along_center, origin, scale, reach, weight, sum,
+      sum_grazing;
   int count = 0;
+
+  void Add(double x, double along, double from, double size, double y, double share) {
+    auto i = static_cast<std::size_t>(count++);
+    direction_x[i] = x;
+    along_center[i] = along;
+    origin[i] = from;
+    scale[i] = size;
+    reach[i] = y;
+    weight[i] = share;
+  }
 };
 
 struct Sums {
   double specular = 0.0, grazing = 0.0;
 };
 
-// Adds the radial integrals of a batch; inlined into one function per instruction set.
-inline __attribute__((always_inline)) void SumRaysBody(Batch& batch, const LobeView& view, double ring_cos,
-                                                       double ring_sin, const GaussRule& radial,
-                                                       int radial_count, int splits) {
-  int count = (batch.count + 7) & ~7;
+// What the rays of a batch have in common.
+struct RayRule {
+  LobeView view;
+  double center_x, center2;
+  const GaussRule* nodes;
+  int count, splits;
+};
+
+// The radial integrals of a batch; inlined into one function per instruction set.
+inline __attribute__((always_inline)) void SumRaysBody(Batch& batch, const RayRule& rule) {
+  int count = (batch.count + 3) & ~3;
   for (int i = batch.count; i < count; ++i) {
     auto j = static_cast<std::size_t>(i);
-    batch.cos_phi[j] = 0.0;
-    batch.reach[j] = batch.crowd[j] = batch.weight[j] = 0.0;
+    batch.direction_x[j] = batch.along_center[j] = batch.origin[j] = batch.scale[j] = batch.reach[j] = 0.0;
   }
+  const double* __restrict direction_x = batch.direction_x.data();
+  const double* __restrict along_center = batch.along_center.data();
+  const double* __restrict origin = batch.origin.data();
+  const double* __restrict scale = batch.scale.data();
+  const double* __restrict reach = batch.reach.data();
+  double* __restrict sum = batch.sum.data();
+  double* __restrict sum_grazing = batch.sum_grazing.data();
   for (int i = 0; i < count; ++i) {
-    batch.sum[static_cast<std::size_t>(i)] = batch.sum_grazing[static_cast<std::size_t>(i)] = 0.0;
+    sum[i] = sum_grazing[i] = 0.0;
   }
-  for (int split = 0; split < splits; ++split) {
-    for (int k = 0; k < radial_count; ++k) {
-      const double x = (split + radial.x[static_cast<std::size_t>(k)]) / splits;
-      const double w = radial.weight[static_cast<std::size_t>(k)] / splits;
-      const double* __restrict cos_phi = batch.cos_phi.data();
-      const double* __restrict reach = batch.reach.data();
-      const double* __restrict crowd = batch.crowd.data();
-      double* __restrict sum = batch.sum.data();
-      double* __restrict sum_grazing = batch.sum_grazing.data();
+  const LobeView view = rule.view;
+  const double alpha2 = view.alpha * view.alpha, center_x = rule.center_x, center2 = rule.center2;
+  for (int split = 0; split < rule.splits; ++split) {
+    for (int k = 0; k < rule.count; ++k) {
+      const double x = (split + rule.nodes->x[static_cast<std::size_t>(k)]) / rule.splits;
+      const double w = rule.nodes->weight[static_cast<std::size_t>(k)] / rule.splits;
       for (int i = 0; i < count; ++i) {
-        double near_end = 1.0 / (1.0 + crowd[i] * x);
-        double y = reach[i] * (1.0 - (1.0 - x) * near_end);
-        double step = reach[i] * (1.0 + crowd[i]) * near_end * near_end;
-        // χ is the ring's plus 2 atan y.
-        double c = 1.0 - y * y, s = 2.0 * y, g = 1.0 / (1.0 + y * y);
-        double sine = ring_sin * c + ring_cos * s, cosine = ring_cos * c - ring_sin * s;
-        double slope = view.alpha * sine / cosine;
-        dual::vec2 f = dual::LobeWeights(view, slope * cos_phi[i], slope * slope);
-        double measure = w * step * 4.0 * sine * cosine * (g * g * g);
+        double p, derivative;
+        dual::RayMap(reach[i] * x, p, derivative);
+        double r = origin[i] + scale[i] * p;
+        double slope2 = center2 + r * (2.0 * along_center[i] + r);
+        dual::vec2 f = dual::LobeWeights(view, center_x + r * direction_x[i], slope2);
+        double tail = alpha2 + slope2;
+        double measure = w * derivative * r / (tail * tail);
         sum[i] += measure * f.x;
         sum_grazing[i] += measure * f.y;
       }
@@ -140,21 +142,16 @@ inline __attribute__((always_inline)) void SumRaysBody(Batch& batch, const LobeV
   }
 }
 
-__attribute__((target("avx2,fma"))) void SumRaysAvx2(Batch& batch, const LobeView& view, double ring_cos,
-                                                     double ring_sin, const GaussRule& radial,
-                                                     int radial_count, int splits) {
-  SumRaysBody(batch, view, ring_cos, ring_sin, radial, radial_count, splits);
+__attribute__((target("avx2,fma"))) void SumRaysAvx2(Batch& batch, const RayRule& rule) {
+  SumRaysBody(batch, rule);
 }
-void SumRaysPlain(Batch& batch, const LobeView& view, double ring_cos, double ring_sin,
-                  const GaussRule& radial, int radial_count, int splits) {
-  SumRaysBody(batch, view, ring_cos, ring_sin, radial, radial_count, splits);
+void SumRaysPlain(Batch& batch, const RayRule& rule) {
+  SumRaysBody(batch, rule);
 }
 
-void SumRays(Batch& batch, const LobeView& view, double ring_cos, double ring_sin, int radial_count,
-             int splits, Sums& sums) {
+void SumRays(Batch& batch, const RayRule& rule, Sums& sums) {
   static const bool kAvx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  (kAvx2 ? SumRaysAvx2 : SumRaysPlain)(batch, view, ring_cos, ring_sin, Gauss(radial_count), radial_count,
-                                       splits);
+  (kAvx2 ? SumRaysAvx2 : SumRaysPlain)(batch, rule);
   for (int i = 0; i < batch.count; ++i) {
     auto j = static_cast<std::size_t>(i);
     sums.specular += batch.weight[j] * batch.sum[j];
@@ -163,50 +160,62 @@ void SumRays(Batch& batch, const LobeView& view, double ring_cos, double ring_si
   batch.count = 0;
 }
 
+// Shadowing changes over n·l of the order of α: a panel of its own where that is less than 1/kThinLayer of
+// the way.
+constexpr double kThinLayer = 6.0;
+
 Sums Integrate(const Outline& outline, const LobeView& view, const TruthLevel& level) {
   Sums sums;
   Batch batch;
-  double ring_cos = view.alpha / std::sqrt(view.alpha * view.alpha + outline.ring_slope * outline.ring_slope);
-  double ring_sin =
-      outline.ring_slope / std::sqrt(view.alpha * view.alpha + outline.ring_slope * outline.ring_slope);
+  const dual::vec2 center = outline.center;
+  const double center2 = glm::dot(center, center), b = outline.scale;
+  const int radial =
+      std::min(static_cast<int>(std::ceil(level.radial + level.radial_per_reach * outline.reach)), kMaxNodes);
+  const RayRule rays{view, center.x, center2, &Gauss(radial), radial, level.splits};
   for (int p = 0; p < outline.panel_count; ++p) {
     const Panel& panel = outline.panels[static_cast<std::size_t>(p)];
-    int count =
-        std::min(static_cast<int>(std::ceil(level.outer + level.outer_per_radian * panel.range)), kMaxNodes);
+    const Arc& arc = outline.arcs[static_cast<std::size_t>(panel.arc)];
+    const double range = panel.u1 - panel.u0;
+    const int count =
+        std::min(static_cast<int>(std::ceil(level.outer + level.outer_per_range * range)), kMaxNodes);
     const GaussRule& rule = Gauss(count);
     for (int split = 0; split < level.splits; ++split) {
       for (int k = 0; k < count; ++k) {
-        double x = (split + rule.x[static_cast<std::size_t>(k)]) / level.splits;
-        double y = panel.reach * (2.0 * x - 1.0);
-        double c = 1.0 - y * y, s = 2.0 * y, g = 1.0 + y * y;
-        double cosine = panel.middle_cos * c - panel.middle_sin * s,
-               sine = panel.middle_sin * c + panel.middle_cos * s;
-        double t = panel.center + panel.width * sine / cosine;
-        // dt = width dϑ / cos²ϑ, ϑ's change 2 dy / (1 + y²), dy = 2 reach dx; cosine is (1 + y²) cosϑ.
-        double dt = panel.width * g * 4.0 * panel.reach * rule.weight[static_cast<std::size_t>(k)] /
-                    (cosine * cosine * level.splits);
+        double u = panel.u0 + range * (split + rule.x[static_cast<std::size_t>(k)]) / level.splits;
+        double grow = std::exp(u), shrink = 1.0 / grow;
+        double t = panel.center + panel.width * 0.5 * (grow - shrink);
+        double dt = panel.width * 0.5 * (grow + shrink) * range * rule.weight[static_cast<std::size_t>(k)] /
+                    level.splits;
         dual::vec2 slope, derivative;
-        dual::ArcSlope(*panel.arc, view, t, slope, derivative);
-        double slope2 = std::max(slope.x * slope.x + slope.y * slope.y, 1e-300), length = std::sqrt(slope2);
-        double tangent = view.alpha * (length - outline.ring_slope) /
-                         (view.alpha * view.alpha + length * outline.ring_slope);
-        auto i = static_cast<std::size_t>(batch.count++);
-        batch.cos_phi[i] = slope.x / length;
-        batch.reach[i] = tangent / (1.0 + std::sqrt(1.0 + tangent * tangent));
-        double n_dot_l_end = dual::CosineFromSlope(view, slope.x, slope2);
-        double n_dot_l_ring = dual::CosineFromSlope(view, outline.ring_slope * batch.cos_phi[i],
-                                                    outline.ring_slope * outline.ring_slope);
-        double fall = std::max(n_dot_l_ring - n_dot_l_end, 0.0) / (std::max(n_dot_l_end, 0.0) + view.alpha);
-        batch.crowd[i] = fall * fall / (1.0 + fall);
-        batch.weight[i] =
-            dt * (slope.x * derivative.y - slope.y * derivative.x) / slope2 / (2.0 * glm::pi<double>());
+        dual::ArcSlope(arc, view, t, slope, derivative);
+        dual::vec2 offset = slope - center;
+        double length2 = std::max(glm::dot(offset, offset), 1e-300), length = std::sqrt(length2);
+        double dx = offset.x / length, dy = offset.y / length, along = center.x * dx + center.y * dy;
+        double turn = (offset.x * derivative.y - offset.y * derivative.x) / length2 * dt;
+        double share = turn * view.alpha * view.alpha / glm::pi<double>();
+        double end = length;
+        // The layer of shadowing at the end; the cut is halfway in its logarithm.
+        double thickness = dual::LayerLength(view, slope, dual::vec2(dx, dy));
+        if (thickness * kThinLayer < length) {
+          double part = std::min(std::sqrt(thickness * length), 0.5 * length);
+          end = length - part;
+          double y = dual::RayMapInverse(part / thickness);
+          batch.Add(dx, along, length, -thickness, y, share * y * thickness);
+          if (batch.count == Batch::kSize) {
+            SumRays(batch, rays, sums);
+          }
+        }
+        double y = dual::RayMapInverse(end / b);
+        batch.Add(dx, along, 0.0, b, y, share * y * b);
         if (batch.count == Batch::kSize) {
-          SumRays(batch, view, ring_cos, ring_sin, level.radial, level.splits, sums);
+          SumRays(batch, rays, sums);
         }
       }
     }
   }
-  SumRays(batch, view, ring_cos, ring_sin, level.radial, level.splits, sums);
+  if (batch.count > 0) {
+    SumRays(batch, rays, sums);
+  }
   return sums;
 }
 
@@ -228,16 +237,18 @@ void AddGreatCircle(Outline& outline, const glm::dvec3& p, const glm::dvec3& q) 
   arc.t0 = -arc.t1;
 }
 
-// Adds the part of a cone's outline between two angles, in half turns about the ends of the long axis.
+// Adds the part of a cone's outline from angle `begin` to `end`, cut at the ends of its axes; `clipped`: both
+// ends are on the horizon.
 void AddCone(Outline& outline, const LightCone& cone, double begin, double end) {
-  constexpr double kPi = glm::pi<double>();
-  for (int half = static_cast<int>(std::floor((begin + 0.5 * kPi) / kPi)); half * kPi - 0.5 * kPi < end;
-       ++half) {
-    double from = std::max(begin - half * kPi, -0.5 * kPi), to = std::min(end - half * kPi, 0.5 * kPi);
+  constexpr double kQuarter = 0.5 * glm::pi<double>();
+  for (int quarter = static_cast<int>(std::floor(begin / kQuarter)); quarter * kQuarter < end; ++quarter) {
+    int half = (quarter + 1) >> 1;  // measured from the nearer end of the long axis: even 0, odd π
+    double low = quarter * kQuarter, high = low + kQuarter;
+    double from = std::max(begin, low), to = std::min(end, high);
     if (from >= to) {
       continue;
     }
-    double sign = half % 2 == 0 ? 1.0 : -1.0;
+    double sign = half % 2 == 0 ? 1.0 : -1.0, zero = half * 2.0 * kQuarter;
     Arc& arc = outline.arcs[static_cast<std::size_t>(outline.arc_count++)];
     arc.axis_1 = cone.axis_1 * sign;
     arc.axis_2 = cone.axis_2 * sign;
@@ -246,97 +257,130 @@ void AddCone(Outline& outline, const LightCone& cone, double begin, double end) 
     arc.cos_1 = cone.cos_1;
     arc.sin_2 = cone.sin_2;
     arc.cos_2 = cone.cos_2;
-    arc.t0 = std::tan(0.5 * from);
-    arc.t1 = std::tan(0.5 * to);
+    arc.t0 = std::tan(0.5 * (from - zero));
+    arc.t1 = std::tan(0.5 * (to - zero));
   }
 }
 
-struct Center {
-  double t, width;
-};
-
-// Where the arc comes nearest to the mirror direction, as the lobe sees it, and the distance over which
-// things change.
-Center FindFoot(const Arc& arc, const LobeView& view, double& least_slope2) {
-  constexpr int kSamples = 5;
-  double best_t = arc.t0, best = std::numeric_limits<double>::max();
-  dual::vec2 slope, derivative;
-  for (int i = 0; i < kSamples; ++i) {
-    double t = arc.t0 + (arc.t1 - arc.t0) * i / (kSamples - 1);
-    dual::ArcSlope(arc, view, t, slope, derivative);
-    double slope2 = slope.x * slope.x + slope.y * slope.y;
-    if (slope2 < best) {
-      best = slope2;
-      best_t = t;
-    }
-  }
-  double spacing = (arc.t1 - arc.t0) / (kSamples - 1);
-  double low = std::max(best_t - spacing, arc.t0), high = std::min(best_t + spacing, arc.t1);
-  double t = best_t, offset = 0.0;
-  double speed2 = 1.0, slope2 = best;
-  for (int step = 0; step < 4; ++step) {
-    dual::ArcSlope(arc, view, t, slope, derivative);
-    speed2 = std::max(derivative.x * derivative.x + derivative.y * derivative.y, 1e-300);
-    slope2 = slope.x * slope.x + slope.y * slope.y;
-    best = std::min(best, slope2);
-    offset = -(slope.x * derivative.x + slope.y * derivative.y) / speed2;
-    if (step < 3) {
-      t = std::clamp(t + offset, low, high);
-    }
-  }
-  least_slope2 = std::min(least_slope2, best);
-  double cross = slope.x * derivative.y - slope.y * derivative.x;
-  return {t + offset, std::min(std::sqrt((view.alpha * view.alpha + cross * cross / speed2) / speed2), 8.0)};
-}
-
-void AddPanels(Outline& outline, const Arc& arc, const Center& foot) {
-  auto add = [&](double t0, double t1, const Center& center) {
+// Cuts an arc into panels, each about the place where most happens.
+void AddPanels(Outline& outline, const LobeView& view, int index, double foot, double width) {
+  const Arc& arc = outline.arcs[static_cast<std::size_t>(index)];
+  auto add = [&](double t0, double t1, double center, double size) {
     if (t1 > t0) {
       outline.panels[static_cast<std::size_t>(outline.panel_count++)] =
-          MakePanel(arc, t0, t1, center.t, center.width);
+          Panel{index, center, size, std::asinh((t0 - center) / size), std::asinh((t1 - center) / size)};
     }
   };
-  // The tip of a long thin outline is a second place where much happens within a short stretch of t.
-  double tip_width = arc.cos_2 > 0.0 ? 0.5 * arc.cos_1 / arc.cos_2 : 1.0;
-  double spacing_at_tip = foot.width + foot.t * foot.t / foot.width;
-  if (tip_width < 0.3 && arc.t0 < 0.0 && arc.t1 > 0.0 && tip_width < 0.5 * spacing_at_tip) {
-    Center tip{0.0, std::max(tip_width, 1e-12)};
-    double cut = foot.t * std::sqrt(tip.width) / (std::sqrt(tip.width) + std::sqrt(foot.width));
-    cut = std::clamp(cut, arc.t0, arc.t1);
-    if (foot.t < 0.0) {
-      add(arc.t0, cut, foot);
-      add(cut, 0.0, tip);
-      add(0.0, arc.t1, tip);
-    } else {
-      add(arc.t0, 0.0, tip);
-      add(0.0, cut, tip);
-      add(cut, arc.t1, foot);
-    }
-  } else {
-    add(arc.t0, arc.t1, foot);
+  double t0 = arc.t0, t1 = arc.t1, half = 0.5 * (arc.t1 - arc.t0);
+  // A layer of shadowing at an end that comes down to the horizon, or the tip of a thin outline at t = 0.
+  auto crowd = [&](double end, double size) {
+    double spacing = std::sqrt(width * width + (end - foot) * (end - foot));
+    return size * kThinLayer < std::min(spacing, 2.0 * half) ? std::min(std::sqrt(size * spacing), half)
+                                                             : 0.0;
+  };
+  double height, rise;
+  dual::ArcHeight(arc, t0, height, rise);
+  double layer_0 = (height + dual::LayerHeight(view)) / std::max(rise, 1e-9);
+  dual::ArcHeight(arc, t1, height, rise);
+  double layer_1 = (height + dual::LayerHeight(view)) / std::max(-rise, 1e-9);
+  if (arc.cos_2 > 0.0) {
+    double tip = std::max(0.5 * arc.cos_1 / arc.cos_2, 1e-12);
+    layer_0 = arc.t0 == 0.0 ? std::min(layer_0, tip) : layer_0;
+    layer_1 = arc.t1 == 0.0 ? std::min(layer_1, tip) : layer_1;
   }
+  double cut_0 = crowd(t0, layer_0), cut_1 = crowd(t1, layer_1);
+  add(t0, t0 + cut_0, t0, layer_0);
+  add(t0 + cut_0, t1 - cut_1, foot, width);
+  add(t1 - cut_1, t1, t1, layer_1);
 }
 
 void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
-  double least = std::numeric_limits<double>::max();
-  for (int i = 0; i < outline.arc_count; ++i) {
-    const Arc& arc = outline.arcs[static_cast<std::size_t>(i)];
-    AddPanels(outline, arc, FindFoot(arc, view, least));
+  constexpr int kSamples = 5;
+  constexpr int kSteps = 4;  // of Gauss–Newton towards the nearest point
+  struct Sample {
+    dual::vec2 slope, derivative;
+  };
+  std::array<std::array<Sample, kSamples>, Outline::kMaxArcs> samples;
+  auto time = [](const Arc& arc, int i) { return arc.t0 + (arc.t1 - arc.t0) * i / (kSamples - 1); };
+  for (int a = 0; a < outline.arc_count; ++a) {
+    for (int i = 0; i < kSamples; ++i) {
+      const Arc& arc = outline.arcs[static_cast<std::size_t>(a)];
+      Sample& sample = samples[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)];
+      dual::ArcSlope(arc, view, time(arc, i), sample.slope, sample.derivative);
+    }
   }
-  outline.ring_slope = mirror_inside || outline.arc_count == 0 ? 0.0 : std::sqrt(least);
+  struct Foot {
+    double t, offset, distance2;
+    Sample at;
+  };
+  // The point of an arc nearest to `to`; t + offset is the foot on the tangent there, beyond the arc where it
+  // may be.
+  auto nearest = [&](int a, const dual::vec2& to) {
+    const Arc& arc = outline.arcs[static_cast<std::size_t>(a)];
+    int best = 0;
+    double least = std::numeric_limits<double>::max();
+    for (int i = 0; i < kSamples; ++i) {
+      dual::vec2 offset = samples[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)].slope - to;
+      if (glm::dot(offset, offset) < least) {
+        least = glm::dot(offset, offset);
+        best = i;
+      }
+    }
+    Foot foot{time(arc, best), 0.0, least,
+              samples[static_cast<std::size_t>(a)][static_cast<std::size_t>(best)]};
+    double low = time(arc, std::max(best - 1, 0)), high = time(arc, std::min(best + 1, kSamples - 1));
+    for (int step = 0;; ++step) {
+      dual::vec2 offset = foot.at.slope - to;
+      double speed2 = std::max(glm::dot(foot.at.derivative, foot.at.derivative), 1e-300);
+      foot.offset = -glm::dot(offset, foot.at.derivative) / speed2;
+      foot.distance2 = glm::dot(offset, offset);
+      double next = std::clamp(foot.t + foot.offset, low, high);
+      if (step == kSteps || next == foot.t) {
+        return foot;
+      }
+      foot.t = next;
+      dual::ArcSlope(arc, view, foot.t, foot.at.slope, foot.at.derivative);
+    }
+  };
+  outline.center = dual::vec2(0.0);
+  if (!mirror_inside) {
+    double least = std::numeric_limits<double>::max();
+    for (int a = 0; a < outline.arc_count; ++a) {
+      Foot foot = nearest(a, dual::vec2(0.0));
+      if (foot.distance2 < least) {
+        least = foot.distance2;
+        outline.center = foot.at.slope;
+      }
+    }
+  }
+  outline.scale = std::sqrt(view.alpha * view.alpha + glm::dot(outline.center, outline.center));
+  double farthest2 = 0.0;
+  for (int a = 0; a < outline.arc_count; ++a) {
+    for (const Sample& sample : samples[static_cast<std::size_t>(a)]) {
+      dual::vec2 offset = sample.slope - outline.center;
+      farthest2 = std::max(farthest2, glm::dot(offset, offset));
+    }
+    Foot foot = nearest(a, outline.center);
+    double speed2 = std::max(glm::dot(foot.at.derivative, foot.at.derivative), 1e-300);
+    double along = foot.offset * foot.offset * speed2;
+    double across = std::max(foot.distance2 - along, 0.0);
+    double width = std::min(std::sqrt((outline.scale * outline.scale + across) / speed2), 8.0);
+    AddPanels(outline, view, a, foot.t + foot.offset, width);
+  }
+  outline.reach = dual::RayMapInverse(std::sqrt(farthest2) / outline.scale);
 }
 
 }  // namespace
 
 const std::array<TruthLevel, kTruthLevelCount>& TruthLevels() {
-  static const std::array<TruthLevel, kTruthLevelCount> levels = {{{2.0, 1.0, 4, 1},
-                                                                   {3.0, 2.0, 6, 1},
-                                                                   {5.0, 3.0, 9, 1},
-                                                                   {8.0, 4.0, 14, 1},
-                                                                   {12.0, 6.0, 20, 1},
-                                                                   {12.0, 6.0, 20, 2},
-                                                                   {12.0, 6.0, 20, 4},
-                                                                   {16.0, 6.0, 24, 8}}};
+  static const std::array<TruthLevel, kTruthLevelCount> levels = {{{2.0, 1.0, 2.0, 3.0, 1},
+                                                                   {3.0, 1.25, 3.0, 4.0, 1},
+                                                                   {4.0, 1.5, 4.0, 5.0, 1},
+                                                                   {5.0, 2.0, 5.0, 6.0, 1},
+                                                                   {7.0, 2.5, 7.0, 8.0, 1},
+                                                                   {9.0, 3.0, 10.0, 12.0, 1},
+                                                                   {9.0, 3.0, 10.0, 12.0, 2},
+                                                                   {12.0, 3.5, 12.0, 14.0, 3}}};
   return levels;
 }
 
@@ -414,7 +458,7 @@ bool MakeOutline(const ShadingPoint& point, const Light& light, Outline& outline
       return true;
     }
     if (horizon.kind == ConeHorizon::Kind::kAbove) {
-      AddCone(outline, cone, -0.5 * glm::pi<double>(), 1.5 * glm::pi<double>());
+      AddCone(outline, cone, 0.0, 2.0 * glm::pi<double>());
     } else {
       AddCone(outline, cone, horizon.psi_begin, horizon.psi_end);
       auto at = [&](double psi) {

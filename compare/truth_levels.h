@@ -9,9 +9,9 @@ namespace arealab {
 
 struct TruthLevel {
   double outer,
-      outer_per_radian;  // nodes on a panel of the outline: outer + outer_per_radian · its reduced length
-  int radial;            // nodes on a ray
-  int splits;            // every panel and every ray is cut into this many equal parts
+      outer_per_range;  // nodes on a panel of the outline: outer + outer_per_range · its length in u
+  double radial, radial_per_reach;  // nodes on a ray: radial + radial_per_reach · the longest ray's y
+  int splits;                       // every panel and every ray is cut into this many equal parts
 };
 
 constexpr int kTruthLevelCount = 8;

@@ -2,13 +2,17 @@
 // Noise-free specular integral over a light, in the plane of half-vector slopes. Dual: C++ too (glsl/dual_begin.h).
 //
 // Frame: the normal is z, the viewer v = (sin_v, 0, cos_v). A light direction l has the half-vector slope
-// s = (l + v)_xy / (l + v)_z, 0 at the mirror direction. There GGX is round, P22(s) = α² / (π (α² + |s|²)²), and the
-// hemisphere above the horizon is a disk that contains 0: |s − v_xy/v_z| ≤ 1/v_z. With dω_l = 4 (v·h) dω_h,
+// s = (l + v)_xy / (l + v)_z, which is 0 at the mirror direction. There GGX is round, P22(s) = α² / (π (α² + |s|²)²), and
+// the hemisphere above the horizon is a disk: |s − v_xy/v_z| ≤ 1/v_z. With dω_l = 4 (v·h) dω_h,
 //   ∫ D G2 / (4 cosθ_v) dω_l = ∫ P22(s) · 4 (sin_v s_x + cos_v) · V(n·v, n·l) n·l d²s,  V = G2 / (4 n·l n·v).
-// In polar coordinates (φ, χ), |s| = α tan χ, P22 |s| d|s| = sin 2χ dχ / 2π: the peak is gone from the integrand.
-// A region is its outline: Σ over arcs ∫ (dφ/dt) ∫ from a ring |s| = ring_slope to s(t) of sin 2χ / 2π · … dχ dt. The ring is
-// the circle that touches the region, or 0 where the mirror direction is inside; all rays are radial and none leaves
-// the disk, so nothing sharp is left but the shadowing at the very horizon, towards which the nodes crowd.
+//
+// The region is its outline: with rays from a center c, Σ over arcs ∫ dφ/dt ∫ from c to s(t) … r dr dt. c is 0 where the
+// mirror direction is inside, else the outline's nearest point to 0; all rays stay in the disk, since it is convex, so the
+// signed sum is right for every outline. Seen from c everything happens at the scale b² = α² + |c|² or coarser:
+// - along a ray the nodes are Gauss points in ζ with (1 + (r/b)²)⁻¹ = cos⁸ζ, dense up to b and nearly even in log r beyond;
+// - along an arc t = t_c + w sinh u about the point nearest to c, w the reach of √(b² + distance²) there;
+// - shadowing makes one thin layer, n·l of the order of α: rays and arcs that end at the horizon get a second panel
+//   that crowds towards that end.
 #include "brdf.glsl"
 
 struct LobeView {
@@ -50,6 +54,54 @@ void ArcSlope(Arc arc, LobeView view, float t, OUT(vec2) slope, OUT(vec2) deriva
   float inv = 1.0 / q.z;
   slope = vec2(q.x * inv, q.y * inv);
   derivative = vec2((dq.x - slope.x * dq.z) * inv, (dq.y - slope.y * dq.z) * inv);
+}
+
+// Height l_z and d(l_z)/dt at t.
+void ArcHeight(Arc arc, float t, OUT(float) height, OUT(float) rise) {
+  float c = 1.0 - t * t;
+  float d = 2.0 * t;
+  float inv = 1.0 / (1.0 + t * t);
+  float x1 = arc.cos_1 * c;
+  float x2 = arc.cos_2 * d;
+  float x3 = sqrt(x1 * x1 + x2 * x2);
+  float dx3 = 2.0 * (arc.cos_2 * x2 - arc.cos_1 * x1 * t) / max(x3, 1e-30);
+  height = (arc.axis_1.z * (arc.sin_1 * c) + arc.axis_2.z * (arc.sin_2 * d) + arc.axis_3.z * x3) * inv;
+  rise = (arc.axis_1.z * (arc.sin_1 * -d) + arc.axis_2.z * (arc.sin_2 * 2.0) + arc.axis_3.z * dx3 - d * height) * inv;
+}
+
+// The n·l over which shadowing changes at the horizon: V has a branch point at about ± i α and a pole at about −n·v.
+float LayerHeight(LobeView view) { return min(view.alpha, view.cos_v); }
+
+// Where the ray of unit direction e ends at slope s: the length over which shadowing changes there, large where n·l does
+// not fall towards the end.
+float LayerLength(LobeView view, vec2 slope, vec2 e) {
+  float inv = 1.0 / (1.0 + dot(slope, slope));
+  float v = 2.0 * (view.sin_v * slope.x + view.cos_v) * inv;  // n·l + n·v
+  float fall = 2.0 * inv * (v * dot(slope, e) - view.sin_v * e.x);
+  return (max(v - view.cos_v, 0.0) + LayerHeight(view)) / max(fall, 1e-9);
+}
+
+// The map of the rays: p(y) with (1 + p²)⁻¹ = cos⁸ζ and y = tan(ζ/2) in [0, 1), and dp/dy.
+void RayMap(float y, OUT(float) p, OUT(float) derivative) {
+  float y2 = y * y;
+  float c = 1.0 - y2;
+  float g = 1.0 + y2;
+  float c2 = c * c;
+  float g2 = g * g;
+  float q = sqrt((g2 + c2) * (g2 * g2 + c2 * c2));
+  float inv = 1.0 / (c * q);
+  float inv_c4 = 1.0 / (c2 * c2);
+  p = 2.0 * y * q * inv_c4;
+  derivative = 8.0 * g2 * g2 * g2 * g * inv * inv_c4;
+}
+
+// The y where p(y) = x ≥ 0; exact for small x too.
+float RayMapInverse(float x) {
+  float c4 = inversesqrt(1.0 + x * x);  // cos⁴ζ
+  float c2 = sqrt(c4);
+  float c = sqrt(c2);
+  float sin2 = x * x * c4 * c4 / ((1.0 + c2) * (1.0 + c4));  // (1 − cos⁸) / ((1 + cos²)(1 + cos⁴)) = sin²ζ
+  return sqrt(sin2) / (1.0 + c);
 }
 
 // Cosine n·l of the light direction whose half vector has the slope s.
