@@ -1,15 +1,22 @@
 #include "scenes/shapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
 namespace arealab {
 namespace {
 
-// 160 × 320 quads: a quad spans π/160 both ways at the equator, so its middle is half a diagonal, 0.0139 rad,
-// from a corner and lies 1 − cos 0.0139 = 9.6e-5 radii deep.
-constexpr int kSphereRings = 160;
-constexpr int kSphereSegments = 320;
+// Rings of latitude. Cells are about π/128 both ways, so that the middle of a cell is half a diagonal, 0.0174
+// rad, from its corners and lies 1 − cos 0.0174 = 1.5e-4 radii deep.
+constexpr int kSphereRings = 128;
+
+// Cells around a ring: as wide as they are high, hence fewer towards the poles. The poles themselves repeat
+// their neighbour's, so that each cell there has a longitude.
+int SphereSegments(int ring) {
+  const int near = std::clamp(ring, 1, kSphereRings - 1);
+  return static_cast<int>(std::ceil(2.0 * kSphereRings * std::sin(glm::pi<double>() * near / kSphereRings)));
+}
 
 void AddVertex(Mesh& mesh, const Placement& placement, const glm::dvec3& position, const glm::dvec3& normal,
                const glm::dvec3& tangent, const glm::dvec2& uv) {
@@ -66,26 +73,37 @@ Mesh MakeBox(const glm::dvec3& size, const Placement& placement) {
 
 Mesh MakeSphere(double radius, const Placement& placement) {
   Mesh mesh;
+  std::uint32_t above = 0;  // first vertex of the ring before
   for (int ring = 0; ring <= kSphereRings; ++ring) {
     const double v = static_cast<double>(ring) / kSphereRings;
     const double theta = v * glm::pi<double>();
-    for (int segment = 0; segment <= kSphereSegments; ++segment) {
-      const double u = static_cast<double>(segment) / kSphereSegments;
+    const int segments = SphereSegments(ring);
+    const auto here = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int segment = 0; segment <= segments; ++segment) {
+      const double u = static_cast<double>(segment) / segments;
       const double phi = u * glm::two_pi<double>();
       const glm::dvec3 normal(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
                               std::cos(theta));
       AddVertex(mesh, placement, radius * normal, normal, {-std::sin(phi), std::cos(phi), 0.0}, {u, v});
     }
-  }
-  const auto row = static_cast<std::uint32_t>(kSphereSegments + 1);
-  for (std::uint32_t ring = 0; ring < kSphereRings; ++ring) {
-    for (std::uint32_t segment = 0; segment < kSphereSegments; ++segment) {
-      const std::uint32_t upper = ring * row + segment;
-      const std::uint32_t lower = upper + row;
-      // At a pole one of the quad's triangles has no area.
-      if (ring > 0) mesh.indices.insert(mesh.indices.end(), {upper, lower, upper + 1});
-      if (ring + 1 < kSphereRings) mesh.indices.insert(mesh.indices.end(), {upper + 1, lower, lower + 1});
+    if (ring > 0) {
+      // Walks both rings eastward, always on the one that lags behind.
+      const int segments_above = SphereSegments(ring - 1);
+      int a = 0, b = 0;
+      while (a < segments_above || b < segments) {
+        const std::uint32_t upper = above + static_cast<std::uint32_t>(a);
+        const std::uint32_t lower = here + static_cast<std::uint32_t>(b);
+        const bool lower_lags = (2 * b + 1) * segments_above <= (2 * a + 1) * segments;
+        if (a == segments_above || (b < segments && lower_lags)) {
+          if (ring < kSphereRings) mesh.indices.insert(mesh.indices.end(), {upper, lower, lower + 1});
+          ++b;
+        } else {
+          if (ring > 1) mesh.indices.insert(mesh.indices.end(), {upper, lower, upper + 1});
+          ++a;
+        }
+      }
     }
+    above = here;
   }
   return mesh;
 }

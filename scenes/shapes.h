@@ -24,7 +24,7 @@ Mesh MakePlane(const glm::dvec2& size, const Placement& placement);
 Mesh MakeBox(const glm::dvec3& size, const Placement& placement);
 
 // radius: m. u is the longitude from local +x through +y, v the angle from local +z. The normal at a point p
-// of a triangle is the sphere's in the direction of p; the triangle lies at most 1e-4 radii inside the
+// of a triangle is the sphere's in the direction of p; the triangle lies at most 1.6e-4 radii inside the
 // sphere.
 Mesh MakeSphere(double radius, const Placement& placement);
 
