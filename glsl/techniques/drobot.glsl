@@ -20,8 +20,8 @@ choices = [
 name = "extent"
 summary = "the light's extent in the diffuse integral"
 choices = [
-  ["area", "area · cosine / distance² at the point (eq. 1.16)"],
   ["solid_angle", "the shape's solid angle (ours)"],
+  ["area", "area · cosine / distance² at the point (eq. 1.16)"],
 ]
 
 [[option]]

@@ -1,0 +1,201 @@
+// Representative points, importance cones and their footprints on lights, in double.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#define EFFECT_FRESNEL 1
+#include "glsl/dual_begin.h"
+#include "glsl/importance_cone.glsl"
+#include "glsl/representative_point.glsl"
+#include "glsl/specular_albedo.glsl"
+#include "glsl/dual_end.h"
+
+namespace arealab {
+namespace {
+
+constexpr double kPi = glm::pi<double>();
+
+glm::dvec3 OnPlane(const glm::dvec3& point, const glm::dvec2& hit) {
+  return {hit, -point.z};
+}
+
+TEST(RepresentativePoint, NormalHitIsOnTheNormalWhereItMeetsThePlane) {
+  const glm::dvec3 point(0.3, -0.2, 1.5), normal = glm::normalize(glm::dvec3(0.4, 0.5, -0.6));
+  const glm::dvec3 to_hit = OnPlane(point, dual::NormalHit(point, normal));
+  EXPECT_LT(glm::length(glm::cross(normal, to_hit)), 1e-14);
+}
+
+// The skew changes directions near the plane's own only, and nothing jumps where the normal turns away.
+TEST(RepresentativePoint, SkewIsContinuousAndFinite) {
+  const glm::dvec3 point(0.3, -0.2, 1.5);
+  glm::dvec2 before = dual::NormalHit(point, {0.0, 0.0, -1.0});
+  for (int i = 1; i <= 20000; ++i) {
+    const double angle = kPi * i / 20000;
+    const glm::dvec3 normal(std::sin(angle), 0.0, -std::cos(angle));
+    const glm::dvec2 hit = dual::NormalHit(point, normal);
+    EXPECT_LT(glm::length(hit - before), 0.03 * point.z);  // one step of 1.6e-4 rad, slope at most 1/kSkew²
+    EXPECT_LE(glm::length(hit), point.z / dual::kSkew + 1e-12);
+    before = hit;
+  }
+}
+
+TEST(RepresentativePoint, NearestHitIsTheFootOrOnTheHorizon) {
+  const glm::dvec3 point(0.3, -0.2, 1.5);
+  EXPECT_EQ(dual::NearestHit(point, glm::normalize(glm::dvec3(0.4, 0.5, -0.6))), glm::dvec2(0.0));
+  const glm::dvec3 away = glm::normalize(glm::dvec3(0.4, 0.5, 0.6));
+  const glm::dvec3 to_hit = OnPlane(point, dual::NearestHit(point, away));
+  EXPECT_NEAR(glm::dot(to_hit, away), 0.0, 1e-14);
+  // Nearest of the horizon's line: along the normal's own trace.
+  EXPECT_NEAR(to_hit.x * away.y - to_hit.y * away.x, 0.0, 1e-14);
+}
+
+TEST(RepresentativePoint, HalfwayHitBisects) {
+  const glm::dvec3 point(0.3, -0.2, 1.5);
+  const glm::dvec2 a(2.0, 1.0), b(-0.5, 0.25);
+  const glm::dvec3 to_hit = OnPlane(point, dual::HalfwayHit(point, a, b) - glm::dvec2(point));
+  const glm::dvec3 direction = glm::normalize(to_hit);
+  EXPECT_NEAR(glm::dot(direction, glm::normalize(OnPlane(point, a))),
+              glm::dot(direction, glm::normalize(OnPlane(point, b))), 1e-14);
+  EXPECT_NEAR(glm::determinant(glm::dmat3(OnPlane(point, a), OnPlane(point, b), to_hit)), 0.0, 1e-13);
+}
+
+TEST(RepresentativePoint, ClosestPointsOfShapes) {
+  EXPECT_EQ(dual::ClosestOnRectangle({3.0, 0.1}, {1.0, 0.5}), glm::dvec2(1.0, 0.1));
+  EXPECT_NEAR(glm::length(dual::ClosestOnDisk({3.0, 4.0}, 2.0) - glm::dvec2(1.2, 1.6)), 0.0, 1e-15);
+  EXPECT_EQ(dual::ClosestOnDisk({0.3, 0.4}, 2.0), glm::dvec2(0.3, 0.4));
+}
+
+// At the cone's edge the half vector's density has fallen to 1/e of its peak.
+TEST(ImportanceCone, ThresholdIsOneOverE) {
+  for (double alpha : {1e-4, 0.01, 0.1, 0.3, 0.5}) {
+    const double half_angle = 0.5 * dual::AngleFromVersine(dual::ThresholdConeVersine(alpha));
+    EXPECT_NEAR(dual::GgxDensity(std::cos(half_angle), alpha) / dual::GgxDensity(1.0, alpha), std::exp(-1.0),
+                alpha < 1e-3 ? 1e-6 : 1e-9)
+        << alpha;
+  }
+}
+
+// Peak times solid angle: what a wide light of radiance 1 reflects from a smooth surface. 1 for the energy's
+// cone at every view angle; at normal incidence σ = 1/e keeps 0.65 of it, and gives back more than all at
+// grazing view.
+TEST(ImportanceCone, EnergyOfTheCones) {
+  const double alpha = 0.02;
+  for (double n_dot_v : {1.0, 0.7, 0.4, 0.2}) {
+    const double peak =
+        dual::GgxDensity(1.0, alpha) * dual::SmithVisibility(n_dot_v, n_dot_v, alpha) * n_dot_v;
+    const double masking = 4.0 * n_dot_v * n_dot_v * dual::SmithVisibility(n_dot_v, n_dot_v, alpha);
+    EXPECT_NEAR(peak * 2.0 * kPi * dual::EnergyConeVersine(alpha, n_dot_v), masking, 1e-12);
+    EXPECT_NEAR(masking, 1.0, 0.01);
+    EXPECT_NEAR(peak * 2.0 * kPi * dual::ThresholdConeVersine(alpha) * n_dot_v, 0.6487 * masking, 1e-3);
+  }
+}
+
+// By the lobe's own text, the peak in double; and the sine's form equals the cosine's.
+TEST(ImportanceCone, DensityBetweenVectors) {
+  const glm::dvec3 n(0.0, 0.0, 1.0);
+  for (double angle : {0.0, 1e-3, 0.1, 1.0, 1.5}) {
+    const glm::dvec3 h(std::sin(angle), 0.0, std::cos(angle));
+    EXPECT_NEAR(dual::GgxDensityBetween(n, h, 0.2) / dual::GgxDensity(std::cos(angle), 0.2), 1.0, 1e-9);
+  }
+}
+
+TEST(ImportanceCone, FootprintOfAStraightConeIsItsSection) {
+  const glm::dvec3 point(0.5, 0.25, 2.0);
+  const double half_angle = 0.3, versine = 1.0 - std::cos(half_angle);
+  const dual::Footprint plain = dual::ConeFootprint(point, {0.0, 0.0, -1.0}, versine, false);
+  EXPECT_NEAR(glm::length(plain.center - glm::dvec2(point)), 0.0, 1e-15);
+  EXPECT_NEAR(plain.radius, 2.0 * std::tan(half_angle), 1e-14);
+  const glm::dvec3 slanted = glm::normalize(glm::dvec3(1.0, 0.5, -1.0));
+  const dual::Footprint kept = dual::ConeFootprint(point, slanted, versine, true);
+  const double reach = point.z / -slanted.z;
+  EXPECT_NEAR(kPi * kept.radius * kept.radius * -slanted.z / (reach * reach), 2.0 * kPi * versine, 1e-14);
+}
+
+// As the mirror direction turns away from the plane the lit part of a light nowhere jumps, and a narrow cone
+// loses it.
+TEST(ImportanceCone, FootprintIsContinuousWhereItMissesThePlane) {
+  for (const bool keep : {false, true}) {
+    for (double alpha : {0.05, 0.3, 0.7, 1.0}) {
+      const double versine = dual::EnergyConeVersine(alpha, 0.8);
+      double before = -1.0;
+      constexpr int kSteps = 200000;
+      for (int i = 0; i <= kSteps; ++i) {
+        const double angle = kPi * i / kSteps;
+        const dual::Footprint footprint =
+            dual::ConeFootprint({0.4, 0.1, 1.0}, {std::sin(angle), 0.0, -std::cos(angle)}, versine, keep);
+        const double area = dual::FootprintOnDisk(footprint, 0.8).area;
+        ASSERT_TRUE(std::isfinite(area) && area >= 0.0) << angle;
+        // Steepest where a wide cone points straight away from the plane: 0.032 m² in a step of 1.6e-5 rad.
+        if (before >= 0.0) {
+          ASSERT_LT(std::abs(area - before), 0.05) << angle << " " << alpha;
+        }
+        before = area;
+      }
+      if (alpha < 0.5) {
+        EXPECT_EQ(before, 0.0);
+      }
+    }
+  }
+}
+
+TEST(ImportanceCone, PartsOfLights) {
+  // Wholly inside, wholly covering, apart; square of equal area.
+  dual::LitPart part = dual::FootprintOnDisk({{0.2, 0.0}, 0.1}, 1.0);
+  EXPECT_NEAR(part.area, kPi * 0.01, 1e-15);
+  EXPECT_NEAR(part.center.x, 0.2, 1e-15);
+  part = dual::FootprintOnDisk({{0.2, 0.0}, 10.0}, 1.0);
+  EXPECT_NEAR(part.area, kPi, 1e-15);
+  EXPECT_EQ(part.center.x, 0.0);
+  EXPECT_EQ(dual::FootprintOnDisk({{3.0, 0.0}, 1.0}, 1.0).area, 0.0);
+  part = dual::FootprintOnRectangle({{0.2, 0.1}, 0.1}, {1.0, 0.5});
+  EXPECT_NEAR(part.area, kPi * 0.01, 1e-15);
+  EXPECT_NEAR(part.center.y, 0.1, 1e-15);
+  part = dual::FootprintOnRectangle({{0.9, 0.0}, 2.0 * 0.2 / std::sqrt(kPi)}, {1.0, 0.5});
+  EXPECT_NEAR(part.area, 0.3 * 0.4, 1e-15);
+  EXPECT_NEAR(part.center.x, 0.85, 1e-15);
+  part = dual::FootprintOnRectangle({{0.0, 0.0}, 1e6}, {1.0, 0.5});
+  EXPECT_EQ(part.area, 2.0);
+  EXPECT_EQ(dual::FootprintOnRectangle({{5.0, 0.0}, 1.0}, {1.0, 0.5}).area, 0.0);
+}
+
+// The fit against quadrature over facets, at nodes other than its own.
+TEST(SpecularAlbedo, FitIsWithinItsStatedError) {
+  double squares_x = 0.0, squares_y = 0.0, worst_x = 0.0, worst_y = 0.0;
+  int count = 0;
+  for (double roughness = 0.03; roughness < 1.0; roughness += 0.097) {
+    for (double n_dot_v = 0.05; n_dot_v < 1.0; n_dot_v += 0.093) {
+      const double alpha = std::max(roughness * roughness, 1e-4);
+      const glm::dvec3 v(std::sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
+      glm::dvec2 expected(0.0);
+      constexpr int kRings = 64, kSpokes = 128;
+      for (int i = 0; i < kRings; ++i) {
+        const double u = (i + 0.5) / kRings;
+        const double cos2 = (1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u);
+        for (int j = 0; j < kSpokes; ++j) {
+          const double phi = 2.0 * kPi * (j + 0.5) / kSpokes, sine = std::sqrt(1.0 - cos2);
+          const glm::dvec3 h(sine * std::cos(phi), sine * std::sin(phi), std::sqrt(cos2));
+          const double v_dot_h = glm::dot(v, h);
+          const double n_dot_l = 2.0 * v_dot_h * h.z - v.z;
+          if (v_dot_h <= 0.0 || n_dot_l <= 0.0) continue;
+          const double weight =
+              dual::SmithVisibility(n_dot_v, n_dot_l, alpha) * 4.0 * n_dot_l * v_dot_h / h.z;
+          expected += glm::dvec2(1.0, dual::SchlickWeight(v_dot_h)) * weight / double{kRings * kSpokes};
+        }
+      }
+      const glm::dvec2 error = dual::SpecularAlbedo(n_dot_v, roughness) - expected;
+      squares_x += error.x * error.x;
+      squares_y += error.y * error.y;
+      worst_x = std::max(worst_x, std::abs(error.x));
+      worst_y = std::max(worst_y, std::abs(error.y));
+      ++count;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares_x / count), 0.012);
+  EXPECT_LT(std::sqrt(squares_y / count), 0.012);
+  EXPECT_LT(worst_x, 0.045);
+  EXPECT_LT(worst_y, 0.06);
+}
+
+}  // namespace
+}  // namespace arealab
