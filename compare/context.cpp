@@ -20,7 +20,8 @@ void ReleaseOther(const Context* next) {
 }
 
 // RTLD_LOCAL: OSMesa and libglvnd export the same gl* names, which must not find one another.
-Library::Library(const std::string& name) : name_(name), handle_(dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+Library::Library(const std::string& name)
+    : name_(name), handle_(dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) {
   if (handle_ == nullptr) throw Unavailable(fmt::format("{} does not load", name));
 }
 
@@ -61,7 +62,8 @@ std::unique_ptr<Context> CreateContext(std::optional<ContextKind> kind, const Co
 
   if (kind == ContextKind::kOsmesa) {
     if (auto context = attempt("OSMesa", osmesa)) return context;
-    throw InputError(fmt::format("no OSMesa context ({}); expected Debian's package libosmesa6, or --context egl", why));
+    throw InputError(
+        fmt::format("no OSMesa context ({}); expected Debian's package libosmesa6, or --context egl", why));
   }
   if (kind == ContextKind::kEgl) {
     if (auto context = attempt("EGL", egl)) return context;

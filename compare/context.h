@@ -20,8 +20,9 @@ class Context {
   virtual ContextKind kind() const = 0;
   virtual const GladGLContext& gl() const = 0;
 
-  // "OSMesa" or "EGL device" or "EGL surfaceless"; GL_RENDERER; GL_VERSION; whether a CPU draws (llvmpipe, softpipe, swrast).
-  // renderer() and version() are remembered from creation: the context need not be current.
+  // "OSMesa" or "EGL device" or "EGL surfaceless"; GL_RENDERER; GL_VERSION; whether a CPU draws (llvmpipe,
+  // softpipe, swrast). renderer() and version() are remembered from creation: the context need not be
+  // current.
   virtual std::string platform() const = 0;
   std::string renderer() const { return renderer_; }
   std::string version() const { return version_; }
@@ -41,9 +42,10 @@ struct ContextLibraries {
   static ContextLibraries FromEnvironment();
 };
 
-// Makes a context of that kind and makes it current; nullopt: EGL where a hardware GPU answers, else OSMesa, else EGL.
-// Throws InputError with one line where there is none.
-std::unique_ptr<Context> CreateContext(std::optional<ContextKind> kind = std::nullopt,
-                                       const ContextLibraries& libraries = ContextLibraries::FromEnvironment());
+// Makes a context of that kind and makes it current; nullopt: EGL where a hardware GPU answers, else OSMesa,
+// else EGL. Throws InputError with one line where there is none.
+std::unique_ptr<Context> CreateContext(
+    std::optional<ContextKind> kind = std::nullopt,
+    const ContextLibraries& libraries = ContextLibraries::FromEnvironment());
 
 }  // namespace arealab

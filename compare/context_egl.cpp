@@ -51,8 +51,8 @@ struct Functions {
   decltype(&eglMakeCurrent) make_current;
 };
 
-// EGL hands the same display to everyone who asks for the same device and one eglTerminate ends it for all: the last
-// user ends it.
+// EGL hands the same display to everyone who asks for the same device and one eglTerminate ends it for all:
+// the last user ends it.
 class DisplayUse {
  public:
   // Throws Unavailable where the display does not start.
@@ -87,7 +87,8 @@ class EglContext : public Context {
     const char* extensions = functions_.query_string(display, EGL_EXTENSIONS);
     // We draw to textures only: neither a surface nor a configuration for one.
     if (!HasWord(extensions, "EGL_KHR_surfaceless_context") ||
-        !(HasWord(extensions, "EGL_KHR_no_config_context") || HasWord(extensions, "EGL_MESA_configless_context"))) {
+        !(HasWord(extensions, "EGL_KHR_no_config_context") ||
+          HasWord(extensions, "EGL_MESA_configless_context"))) {
       throw Unavailable("its contexts need a surface");
     }
     if (functions_.bind_api(EGL_OPENGL_API) != EGL_TRUE) throw Unavailable("it has no desktop OpenGL");
@@ -102,7 +103,8 @@ class EglContext : public Context {
     if (context_ == EGL_NO_CONTEXT) throw Unavailable("it makes no OpenGL 4.5 core context");
     try {
       MakeCurrent();
-      if (gladLoadGLContext(&gl_, functions_.get_proc_address) == 0) throw Unavailable("its functions do not load");
+      if (gladLoadGLContext(&gl_, functions_.get_proc_address) == 0)
+        throw Unavailable("its functions do not load");
       renderer_ = reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER));
       version_ = reinterpret_cast<const char*>(gl_.GetString(GL_VERSION));
     } catch (...) {
@@ -160,7 +162,8 @@ std::vector<Device> Devices(const Functions& functions, const char* client_exten
     return {};
   }
   const auto query_devices = functions.Extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
-  const auto query_device_string = functions.Extension<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+  const auto query_device_string =
+      functions.Extension<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
   if (query_devices == nullptr || query_device_string == nullptr) return {};
   EGLint count = 0;
   if (query_devices(0, nullptr, &count) != EGL_TRUE || count <= 0) return {};
@@ -170,7 +173,8 @@ std::vector<Device> Devices(const Functions& functions, const char* client_exten
   std::vector<Device> devices;
   for (const bool software : {false, true}) {
     for (EGLDeviceEXT handle : handles) {
-      const bool is_software = HasWord(query_device_string(handle, EGL_EXTENSIONS), "EGL_MESA_device_software");
+      const bool is_software =
+          HasWord(query_device_string(handle, EGL_EXTENSIONS), "EGL_MESA_device_software");
       if (is_software == software) devices.push_back({handle, software});
     }
   }
@@ -206,7 +210,8 @@ std::unique_ptr<Context> CreateEgl(const std::string& library, bool hardware_onl
   // Where devices can be listed, surfaceless has none that the list lacks.
   const bool worth_it = devices.empty() || !hardware_only;
   if (worth_it && HasWord(client_extensions, "EGL_MESA_platform_surfaceless")) {
-    if (auto context = attempt(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, "EGL surfaceless")) return context;
+    if (auto context = attempt(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, "EGL surfaceless"))
+      return context;
   }
   throw Unavailable(why);
 }

@@ -38,7 +38,8 @@ class OsmesaContext : public Context {
     if (context_ == nullptr) throw Unavailable("it makes no OpenGL 4.5 core context");
     try {
       MakeCurrent();
-      if (gladLoadGLContext(&gl_, functions_.get_proc_address) == 0) throw Unavailable("its functions do not load");
+      if (gladLoadGLContext(&gl_, functions_.get_proc_address) == 0)
+        throw Unavailable("its functions do not load");
       renderer_ = reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER));
       version_ = reinterpret_cast<const char*>(gl_.GetString(GL_VERSION));
     } catch (...) {
@@ -83,6 +84,8 @@ class OsmesaContext : public Context {
 
 }  // namespace
 
-std::unique_ptr<Context> CreateOsmesa(const std::string& library) { return std::make_unique<OsmesaContext>(library); }
+std::unique_ptr<Context> CreateOsmesa(const std::string& library) {
+  return std::make_unique<OsmesaContext>(library);
+}
 
 }  // namespace arealab::contexts

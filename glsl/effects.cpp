@@ -22,7 +22,8 @@ bool ReflectsAll(const Material& material) {
 std::vector<std::pair<std::string, int>> SceneEffects(const Scene& scene) {
   const std::vector<Light> lights = EmittingLights(scene);
   const auto any_shape = [&](LightShape shape) {
-    return std::any_of(lights.begin(), lights.end(), [&](const Light& light) { return light.shape == shape; });
+    return std::any_of(lights.begin(), lights.end(),
+                       [&](const Light& light) { return light.shape == shape; });
   };
   const bool two_sided = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
     return light.two_sided && light.shape != LightShape::kSphere;

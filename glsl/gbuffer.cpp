@@ -21,8 +21,8 @@ constexpr int kMaxSize = 8192;
 // A disk's outline as a polygon: it lies at most 1 − cos(π/256) = 8e-5 radii inside.
 constexpr int kDiskSegments = 256;
 
-// A sphere's rings and segments: its outline lies at most 1 − cos(π/128) = 3e-4 radii inside, a tenth of a pixel where
-// the sphere fills a picture of 512 pixels.
+// A sphere's rings and segments: its outline lies at most 1 − cos(π/128) = 3e-4 radii inside, a tenth of a
+// pixel where the sphere fills a picture of 512 pixels.
 constexpr int kSphereRings = 64;
 constexpr int kSphereSegments = 128;
 
@@ -42,7 +42,8 @@ View MakeView(const Camera& camera, glm::ivec2 size) {
   view.right = glm::cross(view.forward, camera.up);
   // A camera that looks along its own up direction has no upright picture; any will do.
   if (glm::length(view.right) < 1e-9 * glm::length(camera.up)) {
-    view.right = glm::cross(view.forward, std::abs(view.forward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
+    view.right =
+        glm::cross(view.forward, std::abs(view.forward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
   }
   view.right = glm::normalize(view.right);
   view.up = glm::cross(view.right, view.forward);
@@ -92,7 +93,8 @@ Mesh EmitterMesh(const Light& light) {
         const double angle = 2.0 * std::numbers::pi * i / kDiskSegments;
         add(std::cos(angle), std::sin(angle));
       }
-      for (std::uint32_t i = 1; i + 1 < kDiskSegments; ++i) mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
+      for (std::uint32_t i = 1; i + 1 < kDiskSegments; ++i)
+        mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
       break;
     case LightShape::kSphere:
       AddSphere(light, mesh);
@@ -106,7 +108,8 @@ double DistanceToBox(const glm::dvec3& p, const glm::dvec3& low, const glm::dvec
 }
 
 // The distance from p to a triangle [Ericson 2005, §5.1.5, by its edges and its plane].
-double DistanceToTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+double DistanceToTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                          const glm::dvec3& c) {
   const auto to_edge = [&](const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 edge = to - from;
     const double length2 = glm::dot(edge, edge);
@@ -124,9 +127,9 @@ double DistanceToTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::d
   return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
 
-// Where a triangle's plane passes close to the camera the rasteriser's depth loses digits in proportion to distance over
-// near plane: the near plane is therefore as far as it may be without cutting anything. Where the camera touches a
-// surface this share of the scene's size must do.
+// Where a triangle's plane passes close to the camera the rasteriser's depth loses digits in proportion to
+// distance over near plane: the near plane is therefore as far as it may be without cutting anything. Where
+// the camera touches a surface this share of the scene's size must do.
 constexpr double kLeastNear = 1e-5;
 
 // One entry of gbuffer.frag's Draws, std430.
@@ -248,7 +251,8 @@ void GBuffer::Allocate(glm::ivec2 size) {
   };
   if (gl_.GetError() == GL_OUT_OF_MEMORY || !complete(coverage_framebuffer_) || !complete(framebuffer_)) {
     position_ = {};
-    throw InputError(fmt::format("a picture of {}x{} pixels does not fit; expected a smaller one", size.x, size.y));
+    throw InputError(
+        fmt::format("a picture of {}x{} pixels does not fit; expected a smaller one", size.x, size.y));
   }
   pixels_.width = size.x;
   pixels_.height = size.y;
@@ -274,7 +278,8 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
   const View view = MakeView(scene.camera, size);
   Geometry geometry = Gather(scene, view.position);
   const glm::dvec2 distances = geometry.Distances(view.position);
-  // The nearest point may be seen in the picture's corner, at a depth of its distance × the cosine of that ray.
+  // The nearest point may be seen in the picture's corner, at a depth of its distance × the cosine of that
+  // ray.
   const double corner_cosine = 1.0 / std::sqrt(1.0 + glm::dot(view.half_extent, view.half_extent));
   const double least = kLeastNear * distances.y;
   geometry.near = geometry.ranges.empty() ? 1.0 : std::max(0.99 * corner_cosine * distances.x, least);
@@ -287,10 +292,12 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
   gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl_.Viewport(0, 0, size.x, size.y);
   gl_.BindVertexArray(vertex_array_.id());
-  const GlObject vertices = MakeBuffer(gl_, std::max<std::size_t>(geometry.vertices.size(), 1) * sizeof(Vertex),
-                                       geometry.vertices.empty() ? nullptr : geometry.vertices.data());
-  const GlObject indices = MakeBuffer(gl_, std::max<std::size_t>(geometry.indices.size(), 1) * sizeof(std::uint32_t),
-                                      geometry.indices.empty() ? nullptr : geometry.indices.data());
+  const GlObject vertices =
+      MakeBuffer(gl_, std::max<std::size_t>(geometry.vertices.size(), 1) * sizeof(Vertex),
+                 geometry.vertices.empty() ? nullptr : geometry.vertices.data());
+  const GlObject indices =
+      MakeBuffer(gl_, std::max<std::size_t>(geometry.indices.size(), 1) * sizeof(std::uint32_t),
+                 geometry.indices.empty() ? nullptr : geometry.indices.data());
   const GlObject draws = MakeBuffer(gl_, std::max<std::size_t>(geometry.draws.size(), 1) * sizeof(DrawEntry),
                                     geometry.draws.empty() ? nullptr : geometry.draws.data());
   gl_.VertexArrayVertexBuffer(vertex_array_.id(), 0, vertices.id(), 0, sizeof(Vertex));
@@ -300,6 +307,7 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
   gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, draws.id());
   DrawCoverage(geometry, size);
   Resolve(geometry);
+  gl_.UseProgram(0);  // a program in use would outlive its object
   gl_.BindVertexArray(0);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
 
@@ -351,7 +359,8 @@ void GBuffer::Resolve(const Geometry& geometry) {
   std::map<std::shared_ptr<const Image>, GlObject> earlier = std::exchange(textures_, {});
   for (const Geometry::TextureSet& set : geometry.texture_sets) {
     for (const auto& image : set) {
-      if (const auto known = earlier.find(image); known != earlier.end()) textures_.insert(earlier.extract(known));
+      if (const auto known = earlier.find(image); known != earlier.end())
+        textures_.insert(earlier.extract(known));
     }
   }
   earlier.clear();
@@ -359,7 +368,8 @@ void GBuffer::Resolve(const Geometry& geometry) {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   gl_.UseProgram(resolve_program_.id());
   const std::array<float, 4> background{};
-  for (GLint i = 0; i < 3; ++i) gl_.ClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, i, background.data());
+  for (GLint i = 0; i < 3; ++i)
+    gl_.ClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, i, background.data());
   gl_.BindTextureUnit(0, coverage_.id());
   for (std::size_t i = 0; i < geometry.texture_sets.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -391,7 +401,8 @@ void GBuffer::ReadBack() {
   const auto count = width * static_cast<std::size_t>(pixels_.height);
   const auto read = [&](const GlObject& texture, std::vector<glm::vec4>& texels) {
     texels.resize(count);
-    // A size in bytes is an int in OpenGL, which a picture of 8192 × 8192 × 16 bytes exceeds: read it in bands of 1 GiB.
+    // A size in bytes is an int in OpenGL, which a picture of 8192 × 8192 × 16 bytes exceeds: read it in
+    // bands of 1 GiB.
     const int band = std::max(1, (1 << 26) / pixels_.width);
     for (int y = 0; y < pixels_.height; y += band) {
       const int rows = std::min(band, pixels_.height - y);

@@ -38,16 +38,45 @@ struct Triangle {
   dvec3 corner, edge_b, edge_c;
 };
 
-// Barycentric weights of b and c where the ray through a point of the picture meets the triangle's plane
-// [Möller & Trumbore 1997]; `pixel` is in pixels from the upper left.
-dvec2 RayHit(Triangle triangle, dvec2 pixel) {
+// The ray through a point of the picture, in pixels from the upper left; not unit.
+dvec3 RayThrough(dvec2 pixel) {
   dvec2 ndc = dvec2(2.0lf * pixel.x / size.x - 1.0lf, 1.0lf - 2.0lf * pixel.y / size.y);
-  dvec3 ray = ray_forward + ndc.x * ray_right + ndc.y * ray_up;
+  return ray_forward + ndc.x * ray_right + ndc.y * ray_up;
+}
+
+// Barycentric weights of b and c where the ray meets the triangle's plane [Möller & Trumbore 1997].
+dvec2 RayHit(Triangle triangle, dvec3 ray) {
   dvec3 from_corner = view_position - triangle.corner;
   dvec3 ray_cross_c = cross(ray, triangle.edge_c);
   double determinant = dot(triangle.edge_b, ray_cross_c);
   if (determinant == 0.0lf) return dvec2(1.0lf / 3.0lf);  // edge-on: the centroid will do
   return dvec2(dot(from_corner, ray_cross_c), dot(ray, cross(from_corner, triangle.edge_b))) / determinant;
+}
+
+// The share of the way along an edge, from the corner `from`, where it is nearest to the ray; 0 to 1.
+double NearestOnEdge(dvec3 from, dvec3 edge, dvec3 ray) {
+  dvec3 a = cross(from - view_position, ray);
+  dvec3 e = cross(edge, ray);
+  double length2 = dot(e, e);
+  return length2 > 0.0lf ? clamp(-dot(a, e) / length2, 0.0lf, 1.0lf) : 0.0lf;
+}
+
+double DistanceToRay(Triangle triangle, dvec2 weight, dvec3 ray) {
+  dvec3 point = triangle.corner + weight.x * triangle.edge_b + weight.y * triangle.edge_c;
+  return length(cross(point - view_position, ray));
+}
+
+// The weights of the triangle's point that is nearest to a ray that misses it.
+dvec2 NearestToRay(Triangle triangle, dvec3 ray) {
+  dvec2 on_b = dvec2(NearestOnEdge(triangle.corner, triangle.edge_b, ray), 0.0lf);
+  dvec2 on_c = dvec2(0.0lf, NearestOnEdge(triangle.corner, triangle.edge_c, ray));
+  double t = NearestOnEdge(triangle.corner + triangle.edge_b, triangle.edge_c - triangle.edge_b, ray);
+  dvec2 on_bc = dvec2(1.0lf - t, t);
+  double distance_b = DistanceToRay(triangle, on_b, ray);
+  double distance_c = DistanceToRay(triangle, on_c, ray);
+  double distance_bc = DistanceToRay(triangle, on_bc, ray);
+  if (distance_b <= distance_c && distance_b <= distance_bc) return on_b;
+  return distance_c <= distance_bc ? on_c : on_bc;
 }
 
 void main() {
@@ -65,9 +94,11 @@ void main() {
   triangle.edge_b = Vec3At(b) - triangle.corner;
   triangle.edge_c = Vec3At(c) - triangle.corner;
   dvec2 pixel = dvec2(gl_FragCoord.xy);
-  // Coverage is decided on a grid of 1/256 pixel, so that a centre may lie just outside: seen edge-on, far outside.
-  dvec2 weight = clamp(RayHit(triangle, pixel), 0.0lf, 1.0lf);
-  weight.y = min(weight.y, 1.0lf - weight.x);
+  dvec3 ray = RayThrough(pixel);
+  dvec2 weight = RayHit(triangle, ray);
+  // Coverage is decided on a grid of 1/256 pixel, so that a centre may lie just outside, and on a triangle that is seen
+  // edge-on the plane's point far outside.
+  if (min(weight.x, weight.y) < 0.0lf || weight.x + weight.y > 1.0lf) weight = NearestToRay(triangle, ray);
   double weight_a = 1.0lf - weight.x - weight.y;
 
   dvec3 position = triangle.corner + weight.x * triangle.edge_b + weight.y * triangle.edge_c;
@@ -87,8 +118,8 @@ void main() {
   float rough = draw.roughness.x + (draw.roughness.y - draw.roughness.x) * clamp(uv.x, 0.0, 1.0);
   if (draw.textures.x != 0) {
     // Derivatives by two more rays: the neighbouring pixels may see another triangle.
-    dvec2 hit_x = RayHit(triangle, pixel + dvec2(1.0lf, 0.0lf)) - weight;
-    dvec2 hit_y = RayHit(triangle, pixel + dvec2(0.0lf, 1.0lf)) - weight;
+    dvec2 hit_x = RayHit(triangle, RayThrough(pixel + dvec2(1.0lf, 0.0lf))) - weight;
+    dvec2 hit_y = RayHit(triangle, RayThrough(pixel + dvec2(0.0lf, 1.0lf))) - weight;
     vec2 uv_dx = vec2(hit_x.x * uv_b + hit_x.y * uv_c);
     vec2 uv_dy = vec2(hit_y.x * uv_b + hit_y.y * uv_c);
     if (draw.textures.y != 0) color *= textureGrad(base_color_texture, uv, uv_dx, uv_dy).rgb;

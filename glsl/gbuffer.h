@@ -17,8 +17,8 @@ class GBuffer {
  public:
   GBuffer(const GladGLContext& gl, const ShaderLibrary& library);
 
-  // Rasterises surfaces and emitters and reads them back; texel row 0 is the top of the picture. Throws InputError where
-  // the size is not positive or too large for the context.
+  // Rasterises surfaces and emitters and reads them back; texel row 0 is the top of the picture. Throws
+  // InputError where the size is not positive or too large for the context.
   const SurfacePixels& Draw(const Scene& scene, glm::ivec2 size);
 
   const SurfacePixels& pixels() const { return pixels_; }

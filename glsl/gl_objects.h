@@ -1,5 +1,5 @@
-// OpenGL objects that delete themselves. Every one keeps the table of functions of the context that it lives in; that
-// context must be current when it is made and when it ends.
+// OpenGL objects that delete themselves. Every one keeps the table of functions of the context that it lives
+// in; that context must be current when it is made and when it ends.
 #pragma once
 
 #include <glad/gl.h>
@@ -47,7 +47,8 @@ inline GlObject MakeBuffer(const GladGLContext& gl, std::size_t bytes, const voi
   GLuint id = 0;
   gl.CreateBuffers(1, &id);
   GlObject buffer(gl, id, [](const GladGLContext& table, GLuint name) { table.DeleteBuffers(1, &name); });
-  gl.NamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), data, data == nullptr ? GL_DYNAMIC_STORAGE_BIT : 0);
+  gl.NamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), data,
+                        data == nullptr ? GL_DYNAMIC_STORAGE_BIT : 0);
   return buffer;
 }
 

@@ -16,10 +16,10 @@ constexpr int kLightRows = 8;
 std::vector<Light> EmittingLights(const Scene& scene);
 
 // kLightRows rows per light, as glsl/lights.glsl reads them:
-//   0 centre (m, world), shape (0 rectangle, 1 disk, 2 sphere)   4 half axis A = axis_x · half_size.x (m), area (m²)
-//   1 normal, 1 if two-sided                                      5 half axis B = axis_y · half_size.y (m), 0
-//   2 axis_x, half_size.x (m)                                     6 radiance, 0
-//   3 axis_y, half_size.y (m)                                     7 half_size.x², half_size.y², 2 · x · y (m²), 0
+//   0 centre (m, world), shape (0 rectangle, 1 disk, 2 sphere)   4 half axis A = axis_x · half_size.x (m),
+//   area (m²) 1 normal, 1 if two-sided                                      5 half axis B = axis_y ·
+//   half_size.y (m), 0 2 axis_x, half_size.x (m)                                     6 radiance, 0 3 axis_y,
+//   half_size.y (m)                                     7 half_size.x², half_size.y², 2 · x · y (m²), 0
 // The area is one side's; of a sphere its cross-section πR².
 // Throws InputError where there are more than kMaxLights.
 std::vector<glm::vec4> LightBlockRows(const std::vector<Light>& lights);

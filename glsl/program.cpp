@@ -45,9 +45,9 @@ GlObject Compile(const GladGLContext& gl, GLenum stage, const ExpandedSource& so
 }  // namespace
 
 Program::Program(const GladGLContext& gl, const ExpandedSource& vertex, const ExpandedSource& fragment)
-    : gl_(&gl),
-      program_(gl, gl.CreateProgram(),
-               [](const GladGLContext& table, GLuint name) { table.DeleteProgram(name); }) {
+    : gl_(&gl), program_(gl, gl.CreateProgram(), [](const GladGLContext& table, GLuint name) {
+        table.DeleteProgram(name);
+      }) {
   const GlObject vertex_shader = Compile(gl, GL_VERTEX_SHADER, vertex);
   const GlObject fragment_shader = Compile(gl, GL_FRAGMENT_SHADER, fragment);
   gl.AttachShader(id(), vertex_shader.id());
@@ -66,15 +66,21 @@ Program::Program(const GladGLContext& gl, const ExpandedSource& vertex, const Ex
   log.resize(static_cast<std::size_t>(written));
   // A linker speaks of functions that are missing and seldom gives a line: name the file that was asked for.
   const std::string file = fragment.origins.empty() ? "the program" : fragment.origins.back().file;
-  throw InputError(fmt::format("{}: does not link: {}; expected all functions that are called to be there", file,
-                               FirstError(log)));
+  throw InputError(fmt::format("{}: does not link: {}; expected all functions that are called to be there",
+                               file, FirstError(log)));
 }
 
-GLint Program::Location(const std::string& name) const { return gl_->GetUniformLocation(id(), name.c_str()); }
+GLint Program::Location(const std::string& name) const {
+  return gl_->GetUniformLocation(id(), name.c_str());
+}
 
-void Program::Set(const std::string& name, int value) const { gl_->ProgramUniform1i(id(), Location(name), value); }
+void Program::Set(const std::string& name, int value) const {
+  gl_->ProgramUniform1i(id(), Location(name), value);
+}
 
-void Program::Set(const std::string& name, float value) const { gl_->ProgramUniform1f(id(), Location(name), value); }
+void Program::Set(const std::string& name, float value) const {
+  gl_->ProgramUniform1f(id(), Location(name), value);
+}
 
 void Program::Set(const std::string& name, const glm::vec2& value) const {
   gl_->ProgramUniform2f(id(), Location(name), value.x, value.y);

@@ -11,7 +11,8 @@ namespace arealab {
 
 class Program {
  public:
-  // Throws InputError, one line that begins with the author's file and line, where a text does not compile or link.
+  // Throws InputError, one line that begins with the author's file and line, where a text does not compile or
+  // link.
   Program(const GladGLContext& gl, const ExpandedSource& vertex, const ExpandedSource& fragment);
 
   GLuint id() const { return program_.id(); }

@@ -78,8 +78,8 @@ void Renderer::Impl::Allocate(glm::ivec2 new_size) {
   gl.NamedFramebufferDrawBuffers(framebuffer.id(), static_cast<GLsizei>(targets.size()), targets.data());
   if (gl.GetError() == GL_OUT_OF_MEMORY ||
       gl.CheckNamedFramebufferStatus(framebuffer.id(), GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    throw InputError(
-        fmt::format("a picture of {}x{} pixels does not fit; expected a smaller one", new_size.x, new_size.y));
+    throw InputError(fmt::format("a picture of {}x{} pixels does not fit; expected a smaller one", new_size.x,
+                                 new_size.y));
   }
   size = new_size;
 }
@@ -95,9 +95,10 @@ GLuint Renderer::Impl::LoadTable(const Variant& variant, const arealab::Table& t
   const std::string name = "tables/" + file;
   std::optional<std::string> bytes = library.Find(name);
   if (!bytes) {
-    throw InputError(fmt::format("{}:1: table_{} is {}, which does not exist; expected a file that `arealab fit` wrote",
-                                 library.DisplayPath("techniques/" + variant.technique->name + ".glsl"), table.name,
-                                 library.DisplayPath(name)));
+    throw InputError(
+        fmt::format("{}:1: table_{} is {}, which does not exist; expected a file that `arealab fit` wrote",
+                    library.DisplayPath("techniques/" + variant.technique->name + ".glsl"), table.name,
+                    library.DisplayPath(name)));
   }
   Table& entry = tables[name];
   if (entry.texture.id() == 0 || entry.bytes != *bytes) {
@@ -134,7 +135,8 @@ void Renderer::Impl::SetKnobs(const Pass& pass, const Variant& variant,
   }
   for (const Knob& knob : known) {
     const auto set = knobs.find(knob.name);
-    pass.program->Set("knob_" + knob.name, static_cast<float>(set == knobs.end() ? knob.initial : set->second));
+    pass.program->Set("knob_" + knob.name,
+                      static_cast<float>(set == knobs.end() ? knob.initial : set->second));
   }
 }
 
@@ -163,6 +165,7 @@ void Renderer::Impl::DrawPass(const Pass& pass) const {
   }
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, lights.id());
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.UseProgram(0);  // a program in use would outlive its object
   gl.BindVertexArray(0);
   gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
 }
@@ -197,8 +200,8 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size) {
   impl_->light_count = static_cast<int>(lights.size());
   impl_->effects = SceneEffects(scene);
   impl_->passes.clear();
-  impl_->gl.NamedBufferSubData(impl_->lights.id(), 0, static_cast<GLsizeiptr>(rows.size() * sizeof(glm::vec4)),
-                               rows.data());
+  impl_->gl.NamedBufferSubData(impl_->lights.id(), 0,
+                               static_cast<GLsizeiptr>(rows.size() * sizeof(glm::vec4)), rows.data());
   return impl_->gbuffer.pixels();
 }
 

@@ -18,24 +18,26 @@ namespace arealab {
 
 class Renderer {
  public:
-  // `gl` is the current context's table of functions and, like `library`, outlives the renderer. The context must be
-  // current whenever a member runs.
+  // `gl` is the current context's table of functions and, like `library`, outlives the renderer. The context
+  // must be current whenever a member runs.
   Renderer(const GladGLContext& gl, const ShaderLibrary& library);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // Rasterises the scene into the float G-buffer; it stays the one that Shade reads until the next call. Throws InputError
-  // where the size is not positive or too large, or the scene has too many lights.
+  // Rasterises the scene into the float G-buffer; it stays the one that Shade reads until the next call.
+  // Throws InputError where the size is not positive or too large, or the scene has too many lights.
   const SurfacePixels& DrawScene(const Scene& scene, glm::ivec2 size);
 
-  // Compiles (once per content) and runs the lighting pass. Throws InputError with the author's file and line where the
-  // text does not compile, and where a table or a knob does not exist. `knobs` override the header's initial values by name.
+  // Compiles (once per content) and runs the lighting pass. Throws InputError with the author's file and line
+  // where the text does not compile, and where a table or a knob does not exist. `knobs` override the
+  // header's initial values by name.
   RadianceImage Shade(const Variant& variant, Precision precision = Precision::kFloat,
                       const std::map<std::string, double>& knobs = {});
 
-  // Draws the pass for `variant` once more without reading it back, for a clock; ends with glFinish. After a Shade of the
-  // same variant since DrawScene it uses that program without looking at the files again, so that only drawing is timed.
+  // Draws the pass for `variant` once more without reading it back, for a clock; ends with glFinish. After a
+  // Shade of the same variant since DrawScene it uses that program without looking at the files again, so
+  // that only drawing is timed.
   void Draw(const Variant& variant, Precision precision = Precision::kFloat,
             const std::map<std::string, double>& knobs = {});
 

@@ -40,7 +40,8 @@ TableTexels DecodeTable(std::string_view exr, const std::string& name) {
 
 GlObject UploadTable(const GladGLContext& gl, const TableTexels& table) {
   GlObject texture = MakeTexture(gl, GL_RGBA32F, 1, table.size);
-  gl.TextureSubImage2D(texture.id(), 0, 0, 0, table.size.x, table.size.y, GL_RGBA, GL_FLOAT, table.texels.data());
+  gl.TextureSubImage2D(texture.id(), 0, 0, 0, table.size.x, table.size.y, GL_RGBA, GL_FLOAT,
+                       table.texels.data());
   gl.TextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   gl.TextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl.TextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);

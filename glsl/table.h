@@ -12,7 +12,8 @@ namespace arealab {
 
 struct TableTexels {
   glm::ivec2 size{0};
-  std::vector<glm::vec4> texels;  // row 0 first: texel (i, j) is at texture coordinates (i + ½, j + ½) / size; absent channels 0
+  std::vector<glm::vec4>
+      texels;  // row 0 first: texel (i, j) is at texture coordinates (i + ½, j + ½) / size; absent channels 0
 };
 
 // Decodes an EXR's bytes; `name` is for the message. Throws InputError.

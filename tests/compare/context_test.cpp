@@ -16,7 +16,8 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// Clears a 1×1 float texture to `value` in the current context and reads it back: one round trip through the driver.
+// Clears a 1×1 float texture to `value` in the current context and reads it back: one round trip through the
+// driver.
 float RoundTrip(const Context& context, float value) {
   const GladGLContext& gl = context.gl();
   GLuint texture = 0;
@@ -94,7 +95,9 @@ TEST(Context, OsmesaAndEglAlternateInOneProcess) {
   }
 }
 
-TEST(Context, OsmesaIsSoftware) { EXPECT_TRUE(CreateContext(ContextKind::kOsmesa)->software()); }
+TEST(Context, OsmesaIsSoftware) {
+  EXPECT_TRUE(CreateContext(ContextKind::kOsmesa)->software());
+}
 
 TEST(Context, DefaultIsAGpuOrElseOsmesa) {
   const auto context = CreateContext();
@@ -112,7 +115,8 @@ TEST(Context, DefaultNeedsNoEgl) {
 TEST(Context, NothingThereIsOneLine) {
   const ContextLibraries nothing{.osmesa = "libnothing.so.8", .egl = "libnothing.so.1"};
   for (const std::optional<ContextKind> kind :
-       {std::optional<ContextKind>{}, std::optional{ContextKind::kOsmesa}, std::optional{ContextKind::kEgl}}) {
+       {std::optional<ContextKind>{}, std::optional{ContextKind::kOsmesa},
+        std::optional{ContextKind::kEgl}}) {
     const std::string error = ErrorOf(kind, nothing);
     EXPECT_THAT(error, StartsWith("no "));
     EXPECT_THAT(error, HasSubstr("libnothing.so"));
@@ -122,7 +126,8 @@ TEST(Context, NothingThereIsOneLine) {
 }
 
 TEST(Context, LibraryThatIsNoGlIsRefused) {
-  EXPECT_THAT(ErrorOf(ContextKind::kOsmesa, {.osmesa = "libm.so.6"}), HasSubstr("OSMesaCreateContextAttribs"));
+  EXPECT_THAT(ErrorOf(ContextKind::kOsmesa, {.osmesa = "libm.so.6"}),
+              HasSubstr("OSMesaCreateContextAttribs"));
   EXPECT_THAT(ErrorOf(ContextKind::kEgl, {.egl = "libm.so.6"}), HasSubstr("eglGetProcAddress"));
 }
 

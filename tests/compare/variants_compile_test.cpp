@@ -1,0 +1,76 @@
+// Every variant that the technique headers allow compiles and links, in both precisions. The list is
+// generated: a new technique, option or built-in scene is in it by being there.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "compare/context.h"
+#include "glsl/effects.h"
+#include "glsl/expand.h"
+#include "glsl/program.h"
+#include "glsl/variant.h"
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+using Effects = std::vector<std::pair<std::string, int>>;
+
+// Everything on but the shapes that the technique does not do.
+Effects AllOn(const Technique& technique) {
+  Effects effects = SceneEffects(Scene{});
+  const auto does = [&](LightShape shape) {
+    return std::count(technique.shapes.begin(), technique.shapes.end(), shape) > 0;
+  };
+  for (auto& [name, value] : effects) {
+    value = 1;
+    if (name == "EFFECT_RECTANGLE") value = does(LightShape::kRectangle);
+    if (name == "EFFECT_DISK") value = does(LightShape::kDisk);
+    if (name == "EFFECT_SPHERE") value = does(LightShape::kSphere);
+  }
+  return effects;
+}
+
+class Variants : public testing::TestWithParam<Precision> {};
+
+TEST_P(Variants, EverySupportedOneCompiles) {
+  const auto context = CreateContext(ContextKind::kOsmesa);
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  const std::vector<Variant> variants = AllVariants(techniques);
+  ASSERT_FALSE(variants.empty());
+  std::vector<Scene> scenes;
+  for (const auto& file : BuiltInScenes()) scenes.push_back(LoadScene(file));
+  ASSERT_FALSE(scenes.empty());
+
+  const ExpandedSource fullscreen = Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat);
+  int compiled = 0;
+  for (const Variant& variant : variants) {
+    std::set<Effects> effect_sets{AllOn(*variant.technique)};
+    for (const Scene& scene : scenes) {
+      if (!WhyUnsupported(variant, scene)) effect_sets.insert(SceneEffects(scene));
+    }
+    for (const Effects& effects : effect_sets) {
+      std::string on;
+      for (const auto& [name, value] : effects) on += value ? " " + name : "";
+      SCOPED_TRACE(variant.Name() + " with" + on);
+      try {
+        const Program program(context->gl(), fullscreen,
+                              Expand(library, "lighting.frag", variant, effects, GetParam()));
+        ++compiled;
+      } catch (const InputError& error) {
+        ADD_FAILURE() << error.what();
+      }
+    }
+  }
+  EXPECT_GE(compiled, static_cast<int>(variants.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Precision, Variants, testing::Values(Precision::kFloat, Precision::kDouble),
+                         [](const auto& precision) {
+                           return precision.param == Precision::kFloat ? "Float" : "Double";
+                         });
+
+}  // namespace
+}  // namespace arealab
