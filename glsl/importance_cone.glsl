@@ -63,8 +63,7 @@ Footprint ConeFootprint(vec3 point, vec3 mirror, float cone_versine, bool keep_s
   float tilt = mirror.z > 0.0 ? atan(mirror.z, along) : 0.0;
   float half_angle = max(AngleFromVersine(cone_versine) - tilt, 0.0);
   Footprint footprint;
-  footprint.center = vec2(point.x, point.y) +
-                     vec2(mirror.x, mirror.y) * (mirror.z > 0.0 ? reach / max(along, 1e-3) : reach);
+  footprint.center = vec2(point.x, point.y) + vec2(mirror.x, mirror.y) * reach;
   if (keep_solid_angle) {
     float sine = sin(0.5 * half_angle);
     footprint.radius = reach * sine * 2.0 * inversesqrt(cosine);  // π radius² cosine / reach² = 4π sin²(half angle / 2)

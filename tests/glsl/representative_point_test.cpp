@@ -126,9 +126,9 @@ TEST(ImportanceCone, FootprintIsContinuousWhereItMissesThePlane) {
             dual::ConeFootprint({0.4, 0.1, 1.0}, {std::sin(angle), 0.0, -std::cos(angle)}, versine, keep);
         const double area = dual::FootprintOnDisk(footprint, 0.8).area;
         ASSERT_TRUE(std::isfinite(area) && area >= 0.0) << angle;
-        // Steepest where a wide cone points straight away from the plane: 0.032 m² in a step of 1.6e-5 rad.
+        // One step is 1.6e-5 rad; measured 0.0203 where the last of a cone leaves the plane.
         if (before >= 0.0) {
-          ASSERT_LT(std::abs(area - before), 0.05) << angle << " " << alpha;
+          ASSERT_LT(std::abs(area - before), 0.04) << angle << " " << alpha;
         }
         before = area;
       }
