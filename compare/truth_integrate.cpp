@@ -70,6 +70,7 @@ struct Outline {
   std::array<Panel, 3 * kMaxArcs> panels;
   int panel_count = 0;
   dual::vec2 center{0.0};
+  double ring = 0.0;   // where the rays begin: 0, or the circle about 0 that touches the outline
   double scale = 1.0;  // b: √(α² + |center|²)
   double reach = 0.0;  // y of the farthest sample of the outline
 };
@@ -193,20 +194,20 @@ Sums Integrate(const Outline& outline, const LobeView& view, const TruthLevel& l
         double dx = offset.x / length, dy = offset.y / length, along = center.x * dx + center.y * dy;
         double turn = (offset.x * derivative.y - offset.y * derivative.x) / length2 * dt;
         double share = turn * view.alpha * view.alpha / glm::pi<double>();
-        double end = length;
+        double end = length - outline.ring;
         // The layer of shadowing at the end; the cut is halfway in its logarithm.
         double thickness = dual::LayerLength(view, slope, dual::vec2(dx, dy));
-        if (thickness * kThinLayer < length) {
-          double part = std::min(std::sqrt(thickness * length), 0.5 * length);
-          end = length - part;
+        if (thickness * kThinLayer < end) {
+          double part = std::min(std::sqrt(thickness * end), 0.5 * end);
+          end -= part;
           double y = dual::RayMapInverse(part / thickness);
           batch.Add(dx, along, length, -thickness, y, share * y * thickness);
           if (batch.count == Batch::kSize) {
             SumRays(batch, rays, sums);
           }
         }
-        double y = dual::RayMapInverse(end / b);
-        batch.Add(dx, along, 0.0, b, y, share * y * b);
+        double y = dual::RayMapInverse(std::abs(end) / b), size = std::copysign(b, end);
+        batch.Add(dx, along, outline.ring, size, y, share * y * size);
         if (batch.count == Batch::kSize) {
           SumRays(batch, rays, sums);
         }
@@ -296,7 +297,7 @@ void AddPanels(Outline& outline, const LobeView& view, int index, double foot, d
 
 void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
   constexpr int kSamples = 5;
-  constexpr int kSteps = 4;  // of Gauss–Newton towards the nearest point
+  constexpr int kCuts = 10, kSteps = 3;  // of halving, then of Gauss–Newton towards the nearest point
   struct Sample {
     dual::vec2 slope, derivative;
   };
@@ -317,18 +318,42 @@ void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
   // may be.
   auto nearest = [&](int a, const dual::vec2& to) {
     const Arc& arc = outline.arcs[static_cast<std::size_t>(a)];
-    int best = 0;
-    double least = std::numeric_limits<double>::max();
-    for (int i = 0; i < kSamples; ++i) {
-      dual::vec2 offset = samples[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)].slope - to;
-      if (glm::dot(offset, offset) < least) {
-        least = glm::dot(offset, offset);
-        best = i;
+    // Begins on the nearest chord between samples, so that a near pass between two of them is not missed.
+    struct Chord {
+      double t0, t1;
+      dual::vec2 begin, end;
+      double part, distance2;
+    };
+    auto chord_to = [&](double t0, const dual::vec2& begin, double t1, const dual::vec2& end) {
+      dual::vec2 from = begin - to, along = end - begin;
+      double part = std::clamp(-glm::dot(from, along) / std::max(glm::dot(along, along), 1e-300), 0.0, 1.0);
+      dual::vec2 at = from + along * part;
+      return Chord{t0, t1, begin, end, part, glm::dot(at, at)};
+    };
+    Chord best{};
+    for (std::size_t i = 0; i + 1 < kSamples; ++i) {
+      const auto& here = samples[static_cast<std::size_t>(a)];
+      Chord chord = chord_to(time(arc, static_cast<int>(i)), here[i].slope,
+                             time(arc, static_cast<int>(i) + 1), here[i + 1].slope);
+      best = i == 0 || chord.distance2 < best.distance2 ? chord : best;
+    }
+    double low = best.t0, high = best.t1;
+    Foot foot{};
+    // Halves the chord while the arc runs unevenly along it.
+    for (int cut = 0; cut < kCuts; ++cut) {
+      foot.t = 0.5 * (best.t0 + best.t1);
+      dual::ArcSlope(arc, view, foot.t, foot.at.slope, foot.at.derivative);
+      dual::vec2 bend = foot.at.slope - 0.5 * (best.begin + best.end), along = best.end - best.begin;
+      bool even = glm::dot(bend, bend) < 0.01 * glm::dot(along, along);
+      Chord first = chord_to(best.t0, best.begin, foot.t, foot.at.slope),
+            second = chord_to(foot.t, foot.at.slope, best.t1, best.end);
+      best = first.distance2 <= second.distance2 ? first : second;
+      if (even) {
+        break;
       }
     }
-    Foot foot{time(arc, best), 0.0, least,
-              samples[static_cast<std::size_t>(a)][static_cast<std::size_t>(best)]};
-    double low = time(arc, std::max(best - 1, 0)), high = time(arc, std::min(best + 1, kSamples - 1));
+    foot.t = best.t0 + best.part * (best.t1 - best.t0);
+    dual::ArcSlope(arc, view, foot.t, foot.at.slope, foot.at.derivative);
     for (int step = 0;; ++step) {
       dual::vec2 offset = foot.at.slope - to;
       double speed2 = std::max(glm::dot(foot.at.derivative, foot.at.derivative), 1e-300);
@@ -354,6 +379,23 @@ void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
     }
   }
   outline.scale = std::sqrt(view.alpha * view.alpha + glm::dot(outline.center, outline.center));
+  // Where rays from the center to the far side of the outline pass close by 0, over the lobe's peak, radial
+  // rays from a ring serve better.
+  double center2 = glm::dot(outline.center, outline.center);
+  bool over_peak = false;
+  if (center2 > 0.25 * view.alpha * view.alpha) {
+    for (int a = 0; a < outline.arc_count && !over_peak; ++a) {
+      for (const Sample& sample : samples[static_cast<std::size_t>(a)]) {
+        dual::vec2 ray = sample.slope - outline.center;
+        double length2 = std::max(glm::dot(ray, ray), 1e-300), back = -glm::dot(ray, outline.center);
+        over_peak = over_peak || (back > 0.0 && back < length2 && back * back > 0.75 * center2 * length2);
+      }
+    }
+  }
+  if (over_peak) {
+    outline.ring = std::sqrt(center2);
+    outline.center = dual::vec2(0.0);
+  }
   double farthest2 = 0.0;
   for (int a = 0; a < outline.arc_count; ++a) {
     for (const Sample& sample : samples[static_cast<std::size_t>(a)]) {
@@ -364,7 +406,9 @@ void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
     double speed2 = std::max(glm::dot(foot.at.derivative, foot.at.derivative), 1e-300);
     double along = foot.offset * foot.offset * speed2;
     double across = std::max(foot.distance2 - along, 0.0);
-    double width = std::min(std::sqrt((outline.scale * outline.scale + across) / speed2), 8.0);
+    // Rays from a ring leave a pole where the outline's continuation meets 0.
+    double blur2 = over_peak ? 0.0 : outline.scale * outline.scale;
+    double width = std::min(std::sqrt((blur2 + across) / speed2), 8.0);
     AddPanels(outline, view, a, foot.t + foot.offset, width);
   }
   outline.reach = dual::RayMapInverse(std::sqrt(farthest2) / outline.scale);
