@@ -172,7 +172,7 @@ TEST_P(Drawing, SphereHasItsPointsAndNormals) {
     ASSERT_LT(off, pixel / 64.0);
     beside += off > 1e-6;
   }
-  EXPECT_LT(beside, seen / 100);
+  EXPECT_LE(beside, seen / 50);
   // The cone's half angle is asin(r/d): its disk on the picture has this many pixels, seen nearly in the
   // middle.
   const double distance = glm::distance(center, scene.camera.position);
