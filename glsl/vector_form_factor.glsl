@@ -1,18 +1,19 @@
 // The unclipped vector form factor of a rectangle, F [Hill & Heitz 2016, "vector form factor"]. Dual; after an "edge".
 //
-// Around the corners (+,+), (−,+), (−,−), (+,−) of center ± a ± b, with t_i = θ/|cross| of the edges, the crosses along a side being linear,
-//   Σ t_i v_i × v_{i+1} = 2 [(t2 − t0) p × a + (t3 − t1) p × b + (t0 + t1 + t2 + t3) a × b],  p = center;
-// seen from the origin that runs clockwise, so F = −1/(2π) of it.
+// Around the corners (+,+), (−,+), (−,−), (+,−) of p ± a ± b the edges' crosses are twice
+//   −(p × a − a × b), −(p × b − a × b), p × a + a × b, p × b + a × b;
+// that runs clockwise seen from the origin, so F = −1/(2π) Σ θ cross/|cross|.
 struct VectorFormFactor {
   float size;    // |F|, the form factor in F's own direction
   float height;  // F_z
 };
 
-VectorFormFactor SumSides(vec3 center, vec3 half_a, vec3 half_b, float t0, float t1, float t2, float t3) {
-  vec3 f = cross((t2 - t0) * half_a + (t3 - t1) * half_b, center) - (t0 + t1 + t2 + t3) * cross(half_a, half_b);
+// t0 … t3: θ over the crosses without their factor 2.
+VectorFormFactor SumSides(vec3 p_a, vec3 p_b, vec3 a_b, float t0, float t1, float t2, float t3) {
+  vec3 f = (t0 - t2) * p_a + (t1 - t3) * p_b - (t0 + t1 + t2 + t3) * a_b;
   VectorFormFactor result;
-  result.size = length(f) / kPi;
-  result.height = f.z / kPi;
+  result.size = length(f) * (0.5 / kPi);
+  result.height = f.z * (0.5 / kPi);
   return result;
 }
 
@@ -28,8 +29,17 @@ VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
   float l1 = length(v1);
   float l2 = length(v2);
   float l3 = length(v3);
-  return SumSides(center, half_a, half_b, EdgeRatio(dot(v0, v1), l0 * l1), EdgeRatio(dot(v1, v2), l1 * l2),
-                  EdgeRatio(dot(v2, v3), l2 * l3), EdgeRatio(dot(v3, v0), l3 * l0));
+  vec3 p_a = cross(center, half_a);
+  vec3 p_b = cross(center, half_b);
+  vec3 a_b = cross(half_a, half_b);
+  vec3 line0 = p_a - a_b;
+  vec3 line1 = p_b - a_b;
+  vec3 line2 = p_a + a_b;
+  vec3 line3 = p_b + a_b;
+  return SumSides(p_a, p_b, a_b, EdgeRatio(dot(v0, v1), l0 * l1, 2.0, dot(line0, line0)),
+                  EdgeRatio(dot(v1, v2), l1 * l2, 2.0, dot(line1, line1)),
+                  EdgeRatio(dot(v2, v3), l2 * l3, 2.0, dot(line2, line2)),
+                  EdgeRatio(dot(v3, v0), l3 * l0, 2.0, dot(line3, line3)));
 }
 
 // The same for the light itself: in its own axes its sides are parallel to the axes, which leaves few products.
@@ -49,9 +59,11 @@ VectorFormFactor LambertVector(RectangleView view) {
   float l3 = sqrt(x0 * x0 + row1);
   float along_x = x0 * x1;
   float along_y = y0 * y1;
-  return SumSides(view.center, view.half_a, view.half_b, EdgeRatio(along_x + row0, l0 * l1),
-                  EdgeRatio(along_y + column1, l1 * l2), EdgeRatio(along_x + row1, l2 * l3),
-                  EdgeRatio(along_y + column0, l3 * l0));
+  float a2 = view.half_size.x * view.half_size.x;
+  float b2 = view.half_size.y * view.half_size.y;
+  return SumSides(cross(view.center, view.half_a), cross(view.center, view.half_b), cross(view.half_a, view.half_b),
+                  EdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0), EdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1),
+                  EdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1), EdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0));
 }
 
 // Of the proxy sphere that has the same F, clipped at the horizon; ClippedSphere is the option "sphere".

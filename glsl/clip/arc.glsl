@@ -24,12 +24,10 @@ HorizonShares CutAtHorizon(float top, float rise_a, float rise_b) {
   return shares;
 }
 
-// The sum of the edges: t0 … t3 the quotients θ/|cross| of the edges, closing = θ of the side in the horizon; the crosses'
-// third components c × A, c × B, A × B. Edges v0 v1, v1 c, c v3, v3 v4; along A: (c − k1 B) × A = c × A + k1 A × B.
-float SumEdges(HorizonShares k, float t0, float t1, float t2, float t3, float closing, float c_a, float c_b, float a_b,
-               float orientation) {
-  float sum = t0 * k.k0 * (c_a + k.k1 * a_b) + t1 * k.k1 * c_b - t2 * k.k2 * c_a - t3 * k.k3 * (c_b - k.k2 * a_b);
-  return AsFormFactor((orientation * sum + closing) * (0.5 / kPi));
+// The sum of the edges: z0 … z3 their cross products' third components, over the shares that EdgeRatio has taken in;
+// closing = θ of the side in the horizon.
+float SumEdges(float z0, float z1, float z2, float z3, float closing, float orientation) {
+  return AsFormFactor((orientation * (z0 + z1 - z2 - z3) + closing) * (0.5 / kPi));
 }
 
 // For a clamped cosine about +z, of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
@@ -50,14 +48,20 @@ float ClippedFormFactor(vec3 center, vec3 half_a, vec3 half_b) {
   float lc = length(c);
   float l3 = length(v3);
   float l4 = length(v4);
-  float t0 = EdgeRatio(dot(v0, v1), l0 * l1);
-  float t1 = EdgeRatio(dot(v1, c), l1 * lc);
-  float t2 = EdgeRatio(dot(c, v3), lc * l3);
-  float t3 = EdgeRatio(dot(v3, v4), l3 * l4);
+  // The edges' cross products over their shares: v0 v1 lies on the line through v1 along A, v3 v4 on that through v3 along B.
+  vec3 a_b = cross(a, b);
+  vec3 line2 = cross(c, a);
+  vec3 line0 = line2 + k.k1 * a_b;
+  vec3 line1 = cross(c, b);
+  vec3 line3 = line1 - k.k2 * a_b;
+  float t0 = EdgeRatio(dot(v0, v1), l0 * l1, k.k0, dot(line0, line0));
+  float t1 = EdgeRatio(dot(v1, c), l1 * lc, k.k1, dot(line1, line1));
+  float t2 = EdgeRatio(dot(c, v3), lc * l3, k.k2, dot(line2, line2));
+  float t3 = EdgeRatio(dot(v3, v4), l3 * l4, k.k3, dot(line3, line3));
   float closing = EdgeAngle(dot(v4, v0), l4 * l0, abs(CrossZ(v4, v0)));
   // Sides rising the same way keep half_a × half_b towards the origin: then the polygon runs clockwise.
   float orientation = sign_a * sign_b * -0.25;
-  return SumEdges(k, t0, t1, t2, t3, closing, CrossZ(c, a), CrossZ(c, b), CrossZ(a, b), orientation);
+  return SumEdges(t0 * line0.z, t1 * line1.z, t2 * line2.z, t3 * line3.z, closing, orientation);
 }
 
 // The same for the light itself: in its own axes its sides are parallel to the axes, which leaves few products.
@@ -87,10 +91,12 @@ float ClippedLambert(RectangleView view) {
   float lc = sqrt(x * x + row);
   float l3 = sqrt(x4 * x4 + row);
   float l4 = sqrt(y4 * y4 + column4);
-  float t0 = EdgeRatio(x0 * x + row0, l0 * l1);
-  float t1 = EdgeRatio(y0 * y + column, l1 * lc);
-  float t2 = EdgeRatio(x * x4 + row, lc * l3);
-  float t3 = EdgeRatio(y * y4 + column4, l3 * l4);
+  float side_x2 = side_x * side_x;
+  float side_y2 = side_y * side_y;
+  float t0 = EdgeRatio(x0 * x + row0, l0 * l1, k.k0, side_x2 * row0);
+  float t1 = EdgeRatio(y0 * y + column, l1 * lc, k.k1, side_y2 * column);
+  float t2 = EdgeRatio(x * x4 + row, lc * l3, k.k2, side_x2 * row);
+  float t3 = EdgeRatio(y * y4 + column4, l3 * l4, k.k3, side_y2 * column4);
 
   float c_a = CrossZ(c, a);
   float c_b = CrossZ(c, b);
@@ -98,5 +104,6 @@ float ClippedLambert(RectangleView view) {
   // v4 × v0 from the shares.
   float area = abs((k.k2 - k.k0) * c_a + (k.k3 - k.k1) * c_b + (k.k1 * k.k2 - k.k0 * k.k3) * a_b);
   float closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);
-  return SumEdges(k, t0, t1, t2, t3, closing, c_a, c_b, a_b, sign_a * sign_b * -0.25);
+  return SumEdges(t0 * (c_a + k.k1 * a_b), t1 * c_b, t2 * c_a, t3 * (c_b - k.k2 * a_b), closing,
+                  sign_a * sign_b * -0.25);
 }

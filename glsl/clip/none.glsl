@@ -2,7 +2,8 @@
 float EdgeZ(vec4 v0, vec4 v1) {
   vec3 a = vec3(v0);
   vec3 b = vec3(v1);
-  return EdgeRatio(dot(a, b), v0.w * v1.w) * CrossZ(a, b);
+  vec3 c = cross(a, b);
+  return EdgeRatio(dot(a, b), v0.w * v1.w, 1.0, dot(c, c)) * c.z;
 }
 
 // For a cosine about +z, of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin; at least 0.

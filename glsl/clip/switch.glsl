@@ -7,7 +7,8 @@ vec3 MeetHorizon(vec3 above, vec3 below) { return above.z * below - below.z * ab
 float EdgeZ(vec4 v0, vec4 v1) {
   vec3 a = vec3(v0);
   vec3 b = vec3(v1);
-  return EdgeRatio(dot(a, b), v0.w * v1.w) * CrossZ(a, b);
+  vec3 c = cross(a, b);
+  return EdgeRatio(dot(a, b), v0.w * v1.w, 1.0, dot(c, c)) * c.z;
 }
 
 // For a clamped cosine about +z, of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.

@@ -9,12 +9,12 @@ float AcuteAngleOverSine(float y) {
   return (5.42031 + (3.12829 + 0.0902326 * y) * y) / (3.45068 + (4.18814 + y) * y);
 }
 
-// θ/|v0 × v1|, 1/m², of the angle θ between v0 and v1 from d = v0·v1 and m = |v0||v1|.
-float EdgeRatio(float d, float m) {
+// θ/line, θ the angle between v0 and v1, from d = v0·v1 and m = |v0||v1|, where |v0 × v1| = share · line, line2 = line².
+float EdgeRatio(float d, float m, float share, float line2) {
   float inverse = 1.0 / max(m, 1e-30);
   float x = d * inverse;
   float acute = AcuteAngleOverSine(abs(x));
-  return (x > 0.0 ? acute : kPi * inversesqrt(max(1.0 - x * x, 1e-7)) - acute) * inverse;
+  return (x > 0.0 ? acute : kPi * inversesqrt(max(1.0 - x * x, 1e-7)) - acute) * inverse * share;
 }
 
 // θ itself; `area` = |v0 × v1|. Mirrored as an angle, where it needs no clamp.

@@ -1,7 +1,7 @@
 /*---
 summary = "Linearly transformed cosines, horizon by the vector form factor's proxy sphere"
 citation = "Hill & Heitz 2016; Snyder 1996; Heitz et al. 2016"
-author_note = "Published: clipped sphere from a table, rational edge, tables fitted with an L3 norm. Ours: clipped sphere by a fit, half-angle edge, tables fitted on polygons and stored in the mirror frame."
+author_note = "Published: clipped sphere from a table, rational edge, tables fitted with an L3 norm. Ours: clipped sphere by a fit, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame."
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
@@ -21,7 +21,8 @@ choices = [
 name = "edge"
 summary = "Angle over sine of the edge integral"
 choices = [
-  ["half_angle", "polynomial in the half angle's cosine"],
+  ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
+  ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
   ["rational", "rational fit on unit vectors, mirrored where obtuse"],
   ["acos", "the language's arc cosine"],
 ]

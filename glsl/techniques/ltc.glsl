@@ -1,7 +1,7 @@
 /*---
 summary = "Linearly transformed cosines, clipped exactly at the horizon"
 citation = "Heitz et al. 2016; Hill & Heitz 2016; Lambert 1760"
-author_note = "Published: 16-case clip, rational edge, tables fitted with an L3 norm. Ours: branchless clip in the light's plane, half-angle edge, tables fitted on polygons and stored in the mirror frame."
+author_note = "Published: 16-case clip, rational edge, tables fitted with an L3 norm. Ours: branchless clip in the light's plane, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame."
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
@@ -21,7 +21,8 @@ choices = [
 name = "edge"
 summary = "Angle over sine of the edge integral"
 choices = [
-  ["half_angle", "polynomial in the half angle's cosine"],
+  ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
+  ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
   ["rational", "rational fit on unit vectors, mirrored where obtuse"],
   ["acos", "the language's arc cosine"],
 ]
