@@ -1,0 +1,43 @@
+// The commands of `arealab`. Each adds its subcommand to the parser and runs when it is chosen; an InputError thrown by
+// one is printed as a line by main, with exit status 2.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "compare/context.h"
+#include "glsl/shader_library.h"
+
+namespace arealab {
+
+// What several commands take.
+struct CommonOptions {
+  std::string context;          // "egl", "osmesa" or empty: the best there is
+  std::string size = "512x512";
+  std::string glsl;             // folder whose shader files win over the embedded ones
+  std::string cache;            // folder of truths
+
+  void AddContext(CLI::App& command);
+  void AddSize(CLI::App& command);
+  void AddGlsl(CLI::App& command);
+
+  std::unique_ptr<Context> MakeContext() const;
+  ShaderLibrary Library() const;
+  glm::ivec2 Size() const;  // throws InputError
+  std::filesystem::path CacheFolder() const;
+};
+
+constexpr int kExitLimitExceeded = 1;
+constexpr int kExitBadInput = 2;
+
+// Each returns nothing; `status` is the program's exit status, set by the command that ran.
+void AddCompare(CLI::App& app, int& status, const std::string& command_line);
+void AddRender(CLI::App& app, int& status);
+void AddList(CLI::App& app, int& status);
+void AddFit(CLI::App& app, int& status);
+
+}  // namespace arealab

@@ -1,0 +1,145 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "app/commands.h"
+#include "app/progress.h"
+#include "compare/harness.h"
+#include "compare/report.h"
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+struct CompareArguments {
+  CommonOptions common;
+  std::vector<std::string> scenes;
+  std::vector<std::string> techniques;
+  std::vector<std::string> limits;
+  std::string out = "out";
+  double tolerance = 1e-4;
+  bool all_variants = false;
+  bool timing = false;
+};
+
+struct Limit {
+  std::string metric;
+  double most;
+};
+
+Limit ParseLimit(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  Limit limit{text.substr(0, equals), 0.0};
+  std::size_t used = 0;
+  try {
+    if (equals != std::string::npos) limit.most = std::stod(text.substr(equals + 1), &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (equals == std::string::npos || used == 0 || used != text.size() - equals - 1 || !(limit.most >= 0.0)) {
+    throw InputError(fmt::format("--limit {}: not a limit; expected METRIC=NUMBER, for example rel_rmse=0.05", text));
+  }
+  MetricByName({}, limit.metric);  // names the metrics if this is none of them
+  return limit;
+}
+
+std::vector<Variant> ChosenVariants(const CompareArguments& arguments, const std::vector<Technique>& techniques) {
+  if (arguments.all_variants && !arguments.techniques.empty()) {
+    throw InputError("--all-variants and --technique exclude each other; expected one of them");
+  }
+  if (arguments.all_variants) return AllVariants(techniques);
+  if (arguments.techniques.empty()) return DefaultVariants(techniques);
+  std::vector<Variant> variants;
+  for (const std::string& name : arguments.techniques) {
+    const Variant variant = ParseVariant(techniques, name);
+    if (std::find(variants.begin(), variants.end(), variant) == variants.end()) variants.push_back(variant);
+  }
+  return variants;
+}
+
+// Prints each excess; a figure that could not be measured (non-finite pixels) exceeds every limit.
+bool ExceedsLimits(const Results& results, const std::vector<Limit>& limits) {
+  bool exceeded = false;
+  for (const SceneResult& scene : results.scenes) {
+    for (const VariantResult& variant : scene.variants) {
+      if (!variant.supported) continue;
+      for (const Limit& limit : limits) {
+        const double value = MetricByName(variant.total, limit.metric);
+        if (value <= limit.most) continue;
+        fmt::print(stderr, "{}: {}: {} {:.4g} exceeds {:.4g}\n", scene.name, variant.short_name, limit.metric, value,
+                   limit.most);
+        exceeded = true;
+      }
+    }
+  }
+  return exceeded;
+}
+
+int RunCompare(const CompareArguments& arguments, const std::string& command_line) {
+  std::vector<Limit> limits;
+  for (const std::string& text : arguments.limits) limits.push_back(ParseLimit(text));
+
+  const ShaderLibrary library = arguments.common.Library();
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  CompareOptions options;
+  options.variants = ChosenVariants(arguments, techniques);
+  options.size = arguments.common.Size();
+  options.truth.tolerance = arguments.tolerance;
+  options.cache = arguments.common.CacheFolder();
+  CheckReportDirectory(arguments.out);
+  if (arguments.timing) options.timed_against = ParseVariant(techniques, "point");
+  if (arguments.scenes.empty()) options.scenes = BuiltInScenes();
+  for (const std::string& scene : arguments.scenes) options.scenes.push_back(FindScene(scene));
+
+  Results results;
+  {
+    Progress progress;
+    constexpr double kReportShare = 0.1;  // of the whole time, with the truth cached
+    options.progress = [&](const std::string& what, double fraction) {
+      progress.Show(what, fraction * (1.0 - kReportShare));
+    };
+    const std::unique_ptr<Context> context = arguments.common.MakeContext();
+    results = Compare(*context, library, options);
+    results.command = command_line;
+    results.version = AREALAB_VERSION;
+    results.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                               fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+    WriteReport(results, arguments.out, [&](double fraction) {
+      progress.Show("report", 1.0 - kReportShare * (1.0 - fraction));
+    });
+  }
+  for (const SceneResult& scene : results.scenes) fmt::print("{}\n", SummaryTable(scene));
+  fmt::print("report: {}\n", (std::filesystem::absolute(arguments.out) / "index.html").lexically_normal().string());
+  return ExceedsLimits(results, limits) ? kExitLimitExceeded : 0;
+}
+
+}  // namespace
+
+void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Render scenes through every technique and the truth, and write the report");
+  command->add_option("scenes", arguments->scenes, "built-in names or scene files (default: all built-in scenes)");
+  command->add_option("--out", arguments->out, "folder of the report")->capture_default_str();
+  command->add_option("--technique", arguments->techniques,
+                      "a variant, e.g. ltc, ltc@published or ltc+clip=switch; may be given several times "
+                      "(default: each technique's default and published form)");
+  command->add_flag("--all-variants", arguments->all_variants, "every combination of every technique's options");
+  command->add_option("--limit", arguments->limits,
+                      "METRIC=X: exit with status 1 where a variant's total error exceeds X, e.g. rel_rmse=0.05");
+  command->add_flag("--timing", arguments->timing,
+                    "time the lighting pass of every variant as a ratio to point, in interleaved rounds");
+  command->add_option("--tolerance", arguments->tolerance, "of the truth, relative, per pixel and light")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-8, 1e-1));
+  command->add_option("--cache", arguments->common.cache, "folder of truths already computed (default: the user's cache)");
+  arguments->common.AddContext(*command);
+  arguments->common.AddSize(*command);
+  arguments->common.AddGlsl(*command);
+  command->callback([arguments, command_line, &status] { status = RunCompare(*arguments, command_line); });
+}
+
+}  // namespace arealab

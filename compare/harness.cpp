@@ -1,0 +1,217 @@
+#include "compare/harness.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <fstream>
+#include <thread>
+
+#include "compare/metrics.h"
+#include "compare/timing.h"
+#include "compare/truth_cache.h"
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+constexpr double kTruthMargin = 4.0;  // an error below this multiple of the truth's own is not ranked
+
+// The value of the first "KEY: VALUE" or KEY="VALUE" line of a file of facts about the machine.
+std::string Fact(const char* file, const std::string& key) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind(key, 0) != 0) continue;
+    const std::size_t separator = line.find_first_of(":=");
+    if (separator == std::string::npos) continue;
+    std::string value = line.substr(separator + 1);
+    value.erase(std::remove(value.begin(), value.end(), '"'), value.end());
+    return value.substr(std::min(value.find_first_not_of(" \t"), value.size()));
+  }
+  return "unknown";
+}
+
+std::map<std::string, std::string> Machine() {
+  return {{"cpu", Fact("/proc/cpuinfo", "model name")},
+          {"cores", std::to_string(std::thread::hardware_concurrency())},
+          {"os", Fact("/etc/os-release", "PRETTY_NAME")},
+          {"compiler", "g++ " __VERSION__}};
+}
+
+int CountLit(const RadianceImage& image) {
+  int lit = 0;
+  for (std::size_t i = 0; i < image.size(); ++i) lit += image.Total(i) != glm::vec3(0.0f);
+  return lit;
+}
+
+std::vector<glm::vec3> Totals(const RadianceImage& image) {
+  std::vector<glm::vec3> totals(image.size());
+  for (std::size_t i = 0; i < totals.size(); ++i) totals[i] = image.Total(i);
+  return totals;
+}
+
+bool Finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+int CountNonfinite(const RadianceImage& image) {
+  int count = 0;
+  for (std::size_t i = 0; i < image.size(); ++i) count += !Finite(image.diffuse[i]) || !Finite(image.specular[i]);
+  return count;
+}
+
+VariantResult Describe(const Variant& variant, const Scene& scene) {
+  VariantResult result;
+  result.name = variant.Name();
+  result.short_name = variant.ShortName();
+  result.summary = variant.technique->summary;
+  result.note = variant.technique->author_note;
+  result.citation = variant.technique->citation;
+  if (const auto reason = WhyUnsupported(variant, scene)) {
+    result.supported = false;
+    result.reason = *reason;
+  }
+  return result;
+}
+
+void Measure(VariantResult& result, const RadianceImage& truth, const std::vector<glm::vec3>& truth_total,
+             double truth_error) {
+  const RadianceImage& image = *result.image;
+  const std::vector<glm::vec3> total = Totals(image);
+  result.nonfinite_pixels = CountNonfinite(image);
+  result.total = CompareImages(total, truth_total, truth.width);
+  result.diffuse = CompareImages(image.diffuse, truth.diffuse, truth.width);
+  result.specular = CompareImages(image.specular, truth.specular, truth.width);
+  // FLIP judges what an eye sees: the whole picture, not a lobe of it.
+  if (result.nonfinite_pixels == 0) result.total.flip = HdrFlip(total, truth_total, truth.width);
+  result.within_truth_error = result.total.rel_rmse < kTruthMargin * truth_error;
+}
+
+// Times the passes of the variants that have an image, on the scene that the renderer drew last.
+void Time(const Context& context, Renderer& renderer, const std::vector<Variant>& variants, const Variant& point,
+          int shaded_pixels, std::vector<VariantResult>& results, const std::function<void(double)>& progress) {
+  std::vector<Variant> timed;
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    if (results[v].image) timed.push_back(variants[v]);
+  }
+  TimingOptions options;
+  options.progress = progress;
+  const std::vector<Timing> timings = MeasureTimes(context, renderer, timed, point, shaded_pixels, options);
+  auto timing = timings.begin();
+  for (VariantResult& result : results) {
+    if (result.image) result.time = *timing++;
+  }
+}
+
+// rel_rmse of every ordered pair of the variants that have an image.
+std::vector<PairResult> MeasurePairs(const std::vector<VariantResult>& variants, int width) {
+  std::vector<const VariantResult*> shown;
+  std::vector<std::vector<glm::vec3>> totals;
+  for (const VariantResult& variant : variants) {
+    if (!variant.image) continue;
+    shown.push_back(&variant);
+    totals.push_back(Totals(*variant.image));
+  }
+  std::vector<PairResult> pairs;
+  for (const VariantResult* a : shown) {
+    for (const VariantResult* b : shown) {
+      if (a != b) pairs.push_back({a->name, b->name, kNotMeasured});
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+    const std::size_t others = shown.size() - 1;
+    const std::size_t a = i / others;
+    const std::size_t b = i % others + (i % others >= a ? 1 : 0);
+    pairs[i].rel_rmse = CompareImages(totals[a], totals[b], width).rel_rmse;
+  });
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pixels) {
+  std::vector<glm::vec3> emission(pixels.size(), glm::vec3(0.0f));
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const int kind = static_cast<int>(pixels.position[i].w);
+    if (kind < static_cast<int>(PixelKind::kEmitter)) continue;
+    const Light& light = scene.lights.at(static_cast<std::size_t>(kind - static_cast<int>(PixelKind::kEmitter)));
+    emission[i] = glm::vec3(light.radiance);
+  }
+  return emission;
+}
+
+Results Compare(Context& context, const ShaderLibrary& library, const CompareOptions& options) {
+  Results results;
+  results.machine = Machine();
+  results.platform = context.platform();
+  results.renderer = context.renderer();
+  results.gl_version = context.version();
+  results.software = context.software();
+
+  Renderer renderer(context.gl(), library);
+  const double scene_share = 1.0 / static_cast<double>(std::max<std::size_t>(options.scenes.size(), 1));
+  for (std::size_t s = 0; s < options.scenes.size(); ++s) {
+    const Scene scene = LoadScene(options.scenes[s]);
+    const auto report = [&](const std::string& what, double fraction) {
+      if (options.progress) options.progress(scene.name + ": " + what, (static_cast<double>(s) + fraction) * scene_share);
+    };
+    report("G-buffer", 0.0);
+    const SurfacePixels& pixels = renderer.DrawScene(scene, options.size);
+
+    TruthOptions truth_options = options.truth;
+    truth_options.progress = [&](double fraction) { report("truth", 0.5 * fraction); };
+    const Truth truth = CachedTruth(scene, pixels, truth_options, options.cache);
+
+    SceneResult result;
+    result.name = scene.name;
+    result.question = scene.question;
+    result.file = scene.file.filename().string();
+    result.unit = scene.units == Units::kRadiometric ? "W/(m² sr)" : "cd/m²";
+    result.width = pixels.width;
+    result.height = pixels.height;
+    result.exposure = scene.exposure;
+    for (const auto& [name, on] : SceneEffects(scene)) {
+      if (on != 0) result.effects.push_back(name);
+    }
+    result.truth_relative_error = truth.worst_relative_error;
+    result.truth_seconds = truth.seconds;
+    result.truth_cached = truth.cached;
+    result.truth = std::make_shared<const RadianceImage>(truth.radiance);
+    result.lit_pixels = CountLit(truth.radiance);
+    result.emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(scene, pixels));
+
+    for (std::size_t v = 0; v < options.variants.size(); ++v) {
+      const Variant& variant = options.variants[v];
+      report(variant.ShortName(), 0.5 + 0.2 * static_cast<double>(v) / static_cast<double>(options.variants.size()));
+      VariantResult row = Describe(variant, scene);
+      if (row.supported) row.image = std::make_shared<const RadianceImage>(renderer.Shade(variant));
+      result.variants.push_back(std::move(row));
+    }
+    if (options.timed_against) {
+      const auto surfaces = static_cast<int>(std::ranges::count_if(pixels.position, [](glm::vec4 p) { return p.w == 1.0f; }));
+      Time(context, renderer, options.variants, *options.timed_against, surfaces, result.variants,
+           [&](double fraction) { report("times", 0.7 + 0.2 * fraction); });
+    }
+    report("errors", 0.9);
+    const std::vector<glm::vec3> truth_total = Totals(truth.radiance);
+    tbb::parallel_for(std::size_t{0}, result.variants.size(), [&](std::size_t v) {
+      if (result.variants[v].image) {
+        Measure(result.variants[v], truth.radiance, truth_total, truth.worst_relative_error);
+      }
+    });
+    result.pairs = MeasurePairs(result.variants, result.width);
+    results.scenes.push_back(std::move(result));
+  }
+  return results;
+}
+
+double MetricByName(const ErrorMetrics& metrics, const std::string& name) {
+  const std::map<std::string, double> figures = {
+      {"rel_rmse", metrics.rel_rmse}, {"bias", std::abs(metrics.bias)}, {"relmse", metrics.relmse}, {"mae", metrics.mae},
+      {"p99", metrics.p99},           {"max", metrics.max},             {"flip", metrics.flip}};
+  const auto found = figures.find(name);
+  if (found != figures.end()) return found->second;
+  std::string known;
+  for (const auto& figure : figures) known += (known.empty() ? "" : ", ") + figure.first;
+  throw InputError(fmt::format("no metric \"{}\"; expected one of {}", name, known));
+}
+
+}  // namespace arealab

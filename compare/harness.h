@@ -1,0 +1,40 @@
+// The harness: identical scenes through every variant, each measured against the truth and against the others.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/context.h"
+#include "compare/results.h"
+#include "compare/truth.h"
+#include "glsl/renderer.h"
+#include "glsl/shader_library.h"
+#include "glsl/variant.h"
+
+namespace arealab {
+
+struct CompareOptions {
+  std::vector<std::filesystem::path> scenes;
+  std::vector<Variant> variants;
+  glm::ivec2 size{512, 512};
+  TruthOptions truth;
+  std::filesystem::path cache;                               // folder of truths that are already known
+  std::optional<Variant> timed_against;                      // `point`, where the passes are to be timed
+  std::function<void(const std::string&, double)> progress;  // what is being done, fraction of the whole
+};
+
+// Renders, integrates and measures. Everything in the result is filled but `command`, `version` and `date`.
+Results Compare(Context& context, const ShaderLibrary& library, const CompareOptions& options);
+
+// The radiance of the emitters that the camera sees directly, per pixel.
+std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pixels);
+
+// One figure of a variant's total error by its name in results.json ("rel_rmse", "bias" without its sign, …).
+// Throws InputError that lists the names.
+double MetricByName(const ErrorMetrics& metrics, const std::string& name);
+
+}  // namespace arealab

@@ -1,0 +1,34 @@
+// What shading costs: the lighting pass of each variant against `point`, in interleaved rounds on one clock.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "compare/context.h"
+#include "compare/results.h"
+#include "glsl/renderer.h"
+
+namespace arealab {
+
+struct TimingOptions {
+  double target = 0.02;    // half width of the ratio's 95 % interval over the ratio, at which rounds end
+  int min_rounds = 7;      // fewer give no interval worth printing
+  int max_rounds = 60;
+  double seconds = 20.0;   // of the clock, over all variants; then rounds end too
+  std::function<void(double)> progress;  // fraction of max_rounds; may be empty
+};
+
+// One Timing per variant, of the scene that `renderer` drew last. `point` is the variant that ratios refer to;
+// shaded_pixels is what ns_per_pixel divides by. The clock is process CPU time where a CPU draws, else a timer query.
+// Throws InputError where the clock does not show a draw repeated twice as twice as long (within a factor of 1.25).
+std::vector<Timing> MeasureTimes(const Context& context, Renderer& renderer, const std::vector<Variant>& variants,
+                                 const Variant& point, int shaded_pixels, const TimingOptions& options = {});
+
+// Median and its 95 % bootstrap interval, 1000 resamples from a fixed seed.
+struct Interval {
+  double median, low, high;
+};
+Interval BootstrapMedian(const std::vector<double>& values);
+
+}  // namespace arealab

@@ -1,0 +1,184 @@
+// The program as a person or a build server runs it: exit status, one-line errors, nothing half-written.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = -1;
+  std::string out;  // standard output and error together
+};
+
+Outcome Run(const std::string& arguments) {
+  const std::string command = std::string(AREALAB_PROGRAM) + " " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  Outcome outcome;
+  char buffer[4096];
+  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.out.append(buffer, n);
+  const int raw = pclose(pipe);
+  outcome.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
+  return outcome;
+}
+
+// One line, status 2, and it says `part`.
+void ExpectRefused(const Outcome& outcome, const std::string& part) {
+  EXPECT_EQ(outcome.status, 2) << outcome.out;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+  EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
+}
+
+class Cli : public testing::Test {
+ protected:
+  Cli() {
+    folder_ = fs::temp_directory_path() / ("arealab_cli_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  ~Cli() override { fs::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Cache() const { return " --cache " + Path("cache"); }
+
+  std::string WriteFile(const std::string& name, const std::string& text) const {
+    fs::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << text;
+    return Path(name);
+  }
+
+  nlohmann::json ReadJson(const std::string& name) const {
+    std::ifstream in(folder_ / name);
+    return nlohmann::json::parse(in);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Cli, ListNamesTechniquesWithWhatEachSupportsAndScenes) {
+  const Outcome text = Run("list");
+  EXPECT_EQ(text.status, 0);
+  for (const char* word : {"point", "ltc", "hill", "drobot", "oat", "reference", "lights: ", "gloss"}) {
+    EXPECT_NE(text.out.find(word), std::string::npos) << word;
+  }
+  const Outcome json = Run("list --json");
+  EXPECT_EQ(json.status, 0);
+  const nlohmann::json parsed = nlohmann::json::parse(json.out);
+  EXPECT_GE(parsed.at("techniques").size(), 6u);
+  EXPECT_GE(parsed.at("scenes").size(), 9u);
+  for (const auto& technique : parsed.at("techniques")) EXPECT_FALSE(technique.at("shapes").empty());
+}
+
+TEST_F(Cli, BadUseIsOneLineAndStatusTwo) {
+  ExpectRefused(Run("compare nosuchscene"), "gloss");
+  ExpectRefused(Run("compare gloss --technique ltd"), "ltc");
+  ExpectRefused(Run("compare gloss --technique ltc+clip=arch"), "arc");
+  ExpectRefused(Run("compare gloss --size 0x4"), "--size 0x4");
+  ExpectRefused(Run("compare gloss --limit rel_rms=1"), "rel_rmse");
+  ExpectRefused(Run("compare gloss --limit rel_rmse"), "METRIC=NUMBER");
+  ExpectRefused(Run("compare gloss --glsl " + Path("none")), "none");
+  ExpectRefused(Run("compare gloss --contxt egl"), "contxt");
+  ExpectRefused(Run(""), "subcommand");
+}
+
+TEST_F(Cli, CompareWritesTheReportAndHoldsLimits) {
+  const std::string compare = "compare gloss --size 48x48 --out " + Path("out") + Cache() + " --technique ltc --technique point";
+  const Outcome kept = Run(compare + " --limit rel_rmse=100");
+  ASSERT_EQ(kept.status, 0) << kept.out;
+  EXPECT_NE(kept.out.find("index.html"), std::string::npos);
+  const nlohmann::json results = ReadJson("out/results.json");
+  EXPECT_EQ(results.at("schema"), 1);
+  const nlohmann::json& scene = results.at("scenes").at(0);
+  EXPECT_EQ(scene.at("width"), 48);
+  EXPECT_FALSE(scene.at("truth").at("cached").get<bool>());
+  ASSERT_EQ(scene.at("variants").size(), 2u);
+  const double ltc = scene.at("variants").at(0).at("error").at("total").at("rel_rmse");
+  const double point = scene.at("variants").at(1).at("error").at("total").at("rel_rmse");
+  EXPECT_LT(ltc, 0.1);
+  EXPECT_GT(point, 0.1);  // a point light under a near rectangle: if it were this good, something is swapped
+
+  const Outcome exceeded = Run(compare + " --limit rel_rmse=0.05");
+  EXPECT_EQ(exceeded.status, 1) << exceeded.out;
+  EXPECT_NE(exceeded.out.find("gloss: point: rel_rmse"), std::string::npos) << exceeded.out;
+  EXPECT_TRUE(ReadJson("out/results.json").at("scenes").at(0).at("truth").at("cached").get<bool>());
+}
+
+TEST_F(Cli, SameInputGivesTheSameFigures) {
+  const std::string compare = "compare spheres --size 40x30 --technique ltc --technique drobot";
+  ASSERT_EQ(Run(compare + " --cache " + Path("a_cache") + " --out " + Path("a")).status, 0);
+  ASSERT_EQ(Run(compare + " --cache " + Path("b_cache") + " --out " + Path("b")).status, 0);
+  nlohmann::json a = ReadJson("a/results.json").at("scenes");
+  nlohmann::json b = ReadJson("b/results.json").at("scenes");
+  for (nlohmann::json* scenes : {&a, &b}) (*scenes).at(0).at("truth").erase("seconds");
+  EXPECT_EQ(a, b);
+}
+
+TEST_F(Cli, UnwritableOutputIsRefusedAndAnEarlierReportSurvives) {
+  ExpectRefused(Run("compare gloss --size 16x16 --technique point --out /dev/null/out" + Cache()), "/dev/null/out");
+  const std::string compare = "compare gloss --size 16x16 --technique point --out " + Path("out") + Cache();
+  ASSERT_EQ(Run(compare).status, 0);
+  const auto before = fs::last_write_time(folder_ / "out/results.json");
+  const std::string broken = WriteFile("broken.toml", "# What breaks?\n[camera]\nposition = [0, 0\n");
+  ExpectRefused(Run("compare " + broken + " --out " + Path("out")), "broken.toml:3");
+  EXPECT_EQ(fs::last_write_time(folder_ / "out/results.json"), before);
+}
+
+TEST_F(Cli, ATechniqueIsOneFileTriedLive) {
+  WriteFile("glsl/techniques/flat.glsl",
+            "/*---\nsummary = \"constant\"\ncitation = \"none\"\nauthor_note = \"none\"\n"
+            "shapes = [\"rectangle\", \"disk\", \"sphere\"]\nlobes = [\"diffuse\", \"specular\"]\nbrdfs = [\"ggx\"]\n---*/\n"
+            "#include \"surface.glsl\"\n"
+            "Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {\n"
+            "  return Radiance(surface.diffuse_albedo, vec3(0.0));\n}\n");
+  const Outcome good = Run("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out") + Cache());
+  EXPECT_EQ(good.status, 0) << good.out;
+  EXPECT_NE(good.out.find("flat"), std::string::npos);
+  WriteFile("glsl/techniques/flat.glsl",
+            "/*---\nsummary = \"constant\"\ncitation = \"none\"\nauthor_note = \"none\"\n"
+            "shapes = [\"rectangle\"]\nlobes = [\"diffuse\", \"specular\"]\nbrdfs = [\"ggx\"]\n---*/\n"
+            "#include \"surface.glsl\"\n"
+            "Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {\n"
+            "  return Radiance(surface.difuse_albedo, vec3(0.0));\n}\n");
+  const Outcome bad = Run("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out2") + Cache());
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.out.find("techniques/flat.glsl:11"), std::string::npos) << bad.out;
+  EXPECT_FALSE(fs::exists(folder_ / "out2"));
+}
+
+// Killed at moments spread over the run, it never leaves a half-written report, and the next run finishes.
+TEST_F(Cli, KilledAtAnyMomentNothingIsHalfWritten) {
+  const std::string cache = Path("cache"), out = Path("out");
+  for (const int milliseconds : {30, 120, 250, 400, 600, 900}) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      freopen("/dev/null", "w", stdout);
+      freopen("/dev/null", "w", stderr);
+      execl(AREALAB_PROGRAM, "arealab", "compare", "gloss", "--size", "96x96", "--technique", "ltc", "--technique", "point",
+            "--out", out.c_str(), "--cache", cache.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    if (fs::exists(out)) {
+      EXPECT_NO_THROW(ReadJson("out/results.json"));
+      EXPECT_TRUE(fs::exists(folder_ / "out/index.html"));
+    }
+  }
+  const Outcome last = Run("compare gloss --size 96x96 --technique ltc --technique point --out " + out + " --cache " + cache);
+  EXPECT_EQ(last.status, 0) << last.out;
+  EXPECT_EQ(ReadJson("out/results.json").at("scenes").size(), 1u);
+}
+
+}  // namespace
