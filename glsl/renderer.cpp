@@ -58,6 +58,7 @@ struct Renderer::Impl {
   ExpandedSource fullscreen;
 
   glm::ivec2 size{0};
+  Scene scene;  // drawn last, without its meshes
   int light_count = 0;
   std::vector<std::pair<std::string, int>> effects;
   GlObject framebuffer, diffuse, specular;
@@ -110,6 +111,9 @@ GLuint Renderer::Impl::LoadTable(const Variant& variant, const arealab::Table& t
 }
 
 Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision precision) {
+  if (const std::optional<std::string> why = WhyUnsupported(variant, scene)) {
+    throw InputError(fmt::format("{}; expected a variant that supports the scene", *why));
+  }
   const ExpandedSource source = Expand(library, "lighting.frag", variant, effects, precision);
   std::unique_ptr<Program>& program = programs[source.text];
   if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
@@ -198,6 +202,9 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size) {
   impl_->gbuffer.Draw(scene, size);
   impl_->Allocate(size);
   impl_->light_count = static_cast<int>(lights.size());
+  impl_->scene.name = scene.name;
+  impl_->scene.lights = scene.lights;
+  impl_->scene.materials = scene.materials;
   impl_->effects = SceneEffects(scene);
   impl_->passes.clear();
   impl_->gl.NamedBufferSubData(impl_->lights.id(), 0,

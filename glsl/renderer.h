@@ -30,8 +30,8 @@ class Renderer {
   const SurfacePixels& DrawScene(const Scene& scene, glm::ivec2 size);
 
   // Compiles (once per content) and runs the lighting pass. Throws InputError with the author's file and line
-  // where the text does not compile, and where a table or a knob does not exist. `knobs` override the
-  // header's initial values by name.
+  // where the text does not compile, where a table or a knob does not exist, and where the variant does not
+  // support the scene. `knobs` override the header's initial values by name.
   RadianceImage Shade(const Variant& variant, Precision precision = Precision::kFloat,
                       const std::map<std::string, double>& knobs = {});
 

@@ -521,6 +521,18 @@ TEST_F(Rendering, FacesTurnedAwayAreBlack) {
   EXPECT_GT(surfaces, 100);
 }
 
+TEST_F(Rendering, UnsupportedIsRefusedAndNotDrawnAsSomethingElse) {
+  Renderer renderer(context_->gl(), library_);
+  Technique rectangles_only = *Named("point").technique;
+  rectangles_only.shapes = {LightShape::kRectangle};
+  const Variant variant = DefaultVariant(rectangles_only);
+  renderer.DrawScene(MakeScene(LightShape::kRectangle), kSize);
+  EXPECT_EQ(renderer.Shade(variant).size(), 48u * 36u);
+  renderer.DrawScene(MakeScene(LightShape::kDisk), kSize);
+  EXPECT_THAT(ErrorOf([&] { renderer.Shade(variant); }), HasSubstr("is a disk; expected"));
+  EXPECT_THAT(ErrorOf([&] { renderer.Draw(variant); }), HasSubstr("is a disk; expected"));
+}
+
 TEST_F(Rendering, LightsAreLimited) {
   Renderer renderer(context_->gl(), library_);
   Scene scene = MakeScene(LightShape::kRectangle);
