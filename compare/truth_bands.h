@@ -8,7 +8,7 @@
 
 namespace arealab {
 
-constexpr int kTruthBandRows = 4;
+constexpr int kTruthBandRows = 8;
 
 struct TruthBand {
   std::vector<glm::vec3> diffuse, specular;

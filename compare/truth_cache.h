@@ -1,9 +1,23 @@
-// Truths already computed, by content. Not stored yet: every call computes.
+// Truths already computed, by content, on disk: they survive the program, and a killed run's finished rows
+// are used again.
 #pragma once
+
 #include <filesystem>
+#include <string>
+
 #include "compare/truth.h"
+
 namespace arealab {
-inline Truth CachedTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options, const std::filesystem::path&) {
-  return ComputeTruth(scene, pixels, options);
-}
+
+// The truth of the scene's lights on these pixels, from the folder where it is there, else computed and
+// stored. The name of an entry is a hash of all that the truth depends on (lights, pixels, tolerance, the
+// integrator's version). Entries are written under another name and renamed; one that is short, damaged or
+// foreign is computed again. A folder that cannot be written to costs the storing, not the truth. `cached`
+// says whether everything was there.
+Truth CachedTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options,
+                  const std::filesystem::path& cache_folder);
+
+// The name of the entry: 32 hexadecimal digits.
+std::string TruthKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options);
+
 }  // namespace arealab

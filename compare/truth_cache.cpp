@@ -1,0 +1,216 @@
+#include "compare/truth_cache.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <type_traits>
+
+#include "compare/truth_bands.h"
+
+namespace arealab {
+namespace {
+
+// Changes whenever the integrator's results or the layout of the files change.
+constexpr std::uint64_t kVersion = 1;
+constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
+
+// FNV-1a over 64-bit words, in two lanes that start apart and turn differently; not against malice.
+class Hash {
+ public:
+  void Bytes(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    while (size > 0) {
+      std::uint64_t word = 0;
+      std::size_t step = size < sizeof word ? size : sizeof word;
+      std::memcpy(&word, bytes, step);
+      bytes += step;
+      size -= step;
+      Word(word);
+    }
+  }
+  template <typename T>
+  void Value(const T& value) {
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+    Bytes(&value, sizeof value);
+  }
+  void Vector(const glm::dvec3& v) {
+    Value(v.x);
+    Value(v.y);
+    Value(v.z);
+  }
+  std::uint64_t low() const { return low_; }
+  std::string Text() const { return fmt::format("{:016x}{:016x}", high_, low_); }
+
+ private:
+  void Word(std::uint64_t word) {
+    constexpr std::uint64_t kPrime = 0x100000001b3;  // of FNV
+    low_ = (low_ ^ word) * kPrime;
+    low_ ^= low_ >> 32;  // whole words: spread the high bits down, which plain FNV never does
+    high_ = (((high_ << 23) | (high_ >> 41)) ^ word) * kPrime;
+    high_ ^= high_ >> 29;
+  }
+  std::uint64_t low_ = 0xcbf29ce484222325, high_ = 0x9ae16a3b2f90404f;
+};
+
+struct Header {
+  std::array<char, 8> magic;
+  std::array<char, 32> key;
+  std::uint64_t version, width, rows, checksum;
+  double seconds;
+};
+
+std::size_t PixelCount(const Header& header) {
+  return static_cast<std::size_t>(header.width * header.rows);
+}
+
+std::uint64_t Checksum(const TruthBand& band) {
+  Hash hash;
+  hash.Bytes(band.diffuse.data(), band.diffuse.size() * sizeof(glm::vec3));
+  hash.Bytes(band.specular.data(), band.specular.size() * sizeof(glm::vec3));
+  hash.Bytes(band.relative_error.data(), band.relative_error.size() * sizeof(float));
+  return hash.low();
+}
+
+// Reads what Write wrote for this key and size; nothing where it is anything else.
+std::optional<TruthBand> Read(const std::filesystem::path& file, const std::string& key, int width,
+                              int rows) {
+  std::ifstream in(file, std::ios::binary);
+  Header header{};
+  if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic ||
+      header.version != kVersion || std::string_view(header.key.data(), header.key.size()) != key ||
+      header.width != static_cast<std::uint64_t>(width) || header.rows != static_cast<std::uint64_t>(rows)) {
+    return std::nullopt;
+  }
+  TruthBand band;
+  std::size_t count = PixelCount(header);
+  band.diffuse.resize(count);
+  band.specular.resize(count);
+  band.relative_error.resize(count);
+  band.seconds = header.seconds;
+  auto read = [&](void* data, std::size_t size) {
+    in.read(static_cast<char*>(data), static_cast<std::streamsize>(size));
+  };
+  read(band.diffuse.data(), count * sizeof(glm::vec3));
+  read(band.specular.data(), count * sizeof(glm::vec3));
+  read(band.relative_error.data(), count * sizeof(float));
+  if (!in || in.peek() != std::ifstream::traits_type::eof() || Checksum(band) != header.checksum) {
+    return std::nullopt;
+  }
+  return band;
+}
+
+// Under a name of its own, then renamed: a reader sees all of it or nothing. Failures are silent, see
+// CachedTruth.
+void Write(const std::filesystem::path& file, const std::string& key, int width, int rows,
+           const TruthBand& band) {
+  static std::atomic<unsigned> serial{0};
+  std::filesystem::path part = file;
+  part += fmt::format(".{}-{}.tmp", ::getpid(), serial++);
+  std::error_code ignored;
+  {
+    std::ofstream out(part, std::ios::binary | std::ios::trunc);
+    Header header{kMagic,
+                  {},
+                  kVersion,
+                  static_cast<std::uint64_t>(width),
+                  static_cast<std::uint64_t>(rows),
+                  Checksum(band),
+                  band.seconds};
+    std::memcpy(header.key.data(), key.data(), header.key.size());
+    auto write = [&](const void* data, std::size_t size) {
+      out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    };
+    write(&header, sizeof header);
+    write(band.diffuse.data(), band.diffuse.size() * sizeof(glm::vec3));
+    write(band.specular.data(), band.specular.size() * sizeof(glm::vec3));
+    write(band.relative_error.data(), band.relative_error.size() * sizeof(float));
+    if (!out.flush()) {
+      out.close();
+      std::filesystem::remove(part, ignored);
+      return;
+    }
+  }
+  std::filesystem::rename(part, file, ignored);
+  if (ignored) {
+    std::filesystem::remove(part, ignored);
+  }
+}
+
+}  // namespace
+
+std::string TruthKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
+  Hash hash;
+  hash.Value(kVersion);
+  hash.Value(options.tolerance);
+  hash.Value(pixels.width);
+  hash.Value(pixels.height);
+  hash.Vector(glm::dvec3(pixels.view_position));
+  for (const Light& light : scene.lights) {
+    hash.Value(light.shape);
+    hash.Value(light.two_sided);
+    hash.Vector(light.center);
+    hash.Vector(light.axis_x);
+    hash.Vector(light.axis_y);
+    hash.Vector(light.normal);
+    hash.Value(light.half_size.x);
+    hash.Value(light.half_size.y);
+    hash.Vector(light.radiance);
+  }
+  hash.Bytes(pixels.position.data(), pixels.position.size() * sizeof(glm::vec4));
+  hash.Bytes(pixels.normal.data(), pixels.normal.size() * sizeof(glm::vec4));
+  hash.Bytes(pixels.base_color.data(), pixels.base_color.size() * sizeof(glm::vec4));
+  return hash.Text();
+}
+
+Truth CachedTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options,
+                  const std::filesystem::path& cache_folder) {
+  const std::string key = TruthKey(scene, pixels, options);
+  const std::filesystem::path whole_file = cache_folder / (key + ".truth"),
+                              parts = cache_folder / (key + ".parts");
+  if (auto whole = Read(whole_file, key, pixels.width, pixels.height)) {
+    std::vector<TruthBand> one;
+    one.push_back(std::move(*whole));
+    Truth truth = AssembleTruth(pixels, std::move(one));
+    truth.cached = true;
+    return truth;
+  }
+  auto start = std::chrono::steady_clock::now();
+  std::error_code ignored;
+  std::filesystem::create_directories(parts, ignored);
+  auto part_file = [&](int band) { return parts / fmt::format("{}.rows", band * kTruthBandRows); };
+  auto rows = [&](int band) { return std::min(kTruthBandRows, pixels.height - band * kTruthBandRows); };
+
+  int band_count = (pixels.height + kTruthBandRows - 1) / kTruthBandRows;
+  std::vector<TruthBand> bands(static_cast<std::size_t>(band_count));
+  std::vector<bool> wanted(bands.size(), true);
+  double reused_seconds = 0.0;
+  for (int b = 0; b < band_count; ++b) {
+    if (auto band = Read(part_file(b), key, pixels.width, rows(b))) {
+      reused_seconds += band->seconds;
+      bands[static_cast<std::size_t>(b)] = std::move(*band);
+      wanted[static_cast<std::size_t>(b)] = false;
+    }
+  }
+  ShadeBands(scene, pixels, options, bands, wanted,
+             [&](int b, const TruthBand& band) { Write(part_file(b), key, pixels.width, rows(b), band); });
+  Truth truth = AssembleTruth(pixels, std::move(bands));
+  truth.seconds =
+      reused_seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  TruthBand whole{truth.radiance.diffuse, truth.radiance.specular, truth.relative_error, truth.seconds};
+  Write(whole_file, key, pixels.width, pixels.height, whole);
+  std::filesystem::remove_all(parts, ignored);
+  return truth;
+}
+
+}  // namespace arealab
