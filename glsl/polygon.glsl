@@ -14,6 +14,7 @@ struct RectangleView {
   vec3 half_a;     // m, shading frame
   vec3 half_b;     // m, shading frame; perpendicular to half_a
   vec3 in_plane;   // m, the centre along the light's axis_x, axis_y and normal
+  vec3 horizon;    // the shading normal along the same
   vec2 half_size;  // m, |half_a| and |half_b|
 };
 
@@ -22,8 +23,9 @@ RectangleView ViewRectangle(Light light, vec3 position, vec3 tangent, vec3 bitan
   vec3 to_center = light.center - position;
   RectangleView view;
   view.center = vec3(dot(tangent, to_center), dot(bitangent, to_center), dot(normal, to_center));
-  view.half_a = vec3(dot(tangent, light.half_axis_x), dot(bitangent, light.half_axis_x), dot(normal, light.half_axis_x));
-  view.half_b = vec3(dot(tangent, light.half_axis_y), dot(bitangent, light.half_axis_y), dot(normal, light.half_axis_y));
+  view.horizon = vec3(dot(normal, light.axis_x), dot(normal, light.axis_y), dot(normal, light.normal));
+  view.half_a = vec3(dot(tangent, light.half_axis_x), dot(bitangent, light.half_axis_x), view.horizon.x * light.half_size.x);
+  view.half_b = vec3(dot(tangent, light.half_axis_y), dot(bitangent, light.half_axis_y), view.horizon.y * light.half_size.y);
   view.in_plane = vec3(dot(light.axis_x, to_center), dot(light.axis_y, to_center), dot(light.normal, to_center));
   view.half_size = light.half_size;
   return view;
@@ -32,6 +34,5 @@ RectangleView ViewRectangle(Light light, vec3 position, vec3 tangent, vec3 bitan
 // The third component of a × b.
 float CrossZ(vec3 a, vec3 b) { return a.x * b.y - a.y * b.x; }
 
-// A form factor lies in [0, 1]; rounding can leave that range, and a point on an edge of the light has no form factor
-// at all, where its float is anything. The comparison also turns NaN to 0.
-float AsFormFactor(float value) { return value > 0.0 ? min(value, 1.0) : 0.0; }
+// A form factor lies in [0, 1]; rounding can leave that range.
+float AsFormFactor(float value) { return clamp(value, 0.0, 1.0); }

@@ -8,15 +8,6 @@ struct VectorFormFactor {
   float height;  // F_z
 };
 
-// t0 … t3: θ over the crosses without their factor 2.
-VectorFormFactor SumSides(vec3 p_a, vec3 p_b, vec3 a_b, float t0, float t1, float t2, float t3) {
-  vec3 f = (t0 - t2) * p_a + (t1 - t3) * p_b - (t0 + t1 + t2 + t3) * a_b;
-  VectorFormFactor result;
-  result.size = length(f) * (0.5 / kPi);
-  result.height = f.z * (0.5 / kPi);
-  return result;
-}
-
 // Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
 VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
   vec3 sum = half_a + half_b;
@@ -36,13 +27,19 @@ VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
   vec3 line1 = p_b - a_b;
   vec3 line2 = p_a + a_b;
   vec3 line3 = p_b + a_b;
-  return SumSides(p_a, p_b, a_b, EdgeRatio(dot(v0, v1), l0 * l1, 2.0, dot(line0, line0)),
-                  EdgeRatio(dot(v1, v2), l1 * l2, 2.0, dot(line1, line1)),
-                  EdgeRatio(dot(v2, v3), l2 * l3, 2.0, dot(line2, line2)),
-                  EdgeRatio(dot(v3, v0), l3 * l0, 2.0, dot(line3, line3)));
+  float t0 = EdgeRatio(dot(v0, v1), l0 * l1, 2.0, dot(line0, line0));
+  float t1 = EdgeRatio(dot(v1, v2), l1 * l2, 2.0, dot(line1, line1));
+  float t2 = EdgeRatio(dot(v2, v3), l2 * l3, 2.0, dot(line2, line2));
+  float t3 = EdgeRatio(dot(v3, v0), l3 * l0, 2.0, dot(line3, line3));
+  vec3 f = (t0 - t2) * p_a + (t1 - t3) * p_b - (t0 + t1 + t2 + t3) * a_b;
+  VectorFormFactor result;
+  result.size = length(f) * (0.5 / kPi);
+  result.height = f.z * (0.5 / kPi);
+  return result;
 }
 
-// The same for the light itself: in its own axes its sides are parallel to the axes, which leaves few products.
+// The same for the light itself, in its own axes, where the crosses are p × a = |a| (0, z, −y), p × b = |b| (−z, 0, x) and
+// a × b = |a||b| (0, 0, 1).
 VectorFormFactor LambertVector(RectangleView view) {
   float x0 = view.in_plane.x + view.half_size.x;
   float x1 = view.in_plane.x - view.half_size.x;
@@ -61,9 +58,19 @@ VectorFormFactor LambertVector(RectangleView view) {
   float along_y = y0 * y1;
   float a2 = view.half_size.x * view.half_size.x;
   float b2 = view.half_size.y * view.half_size.y;
-  return SumSides(cross(view.center, view.half_a), cross(view.center, view.half_b), cross(view.half_a, view.half_b),
-                  EdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0), EdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1),
-                  EdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1), EdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0));
+  float t0 = EdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0);
+  float t1 = EdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1);
+  float t2 = EdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1);
+  float t3 = EdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0);
+  float alpha = view.half_size.x * (t0 - t2);
+  float beta = view.half_size.y * (t1 - t3);
+  float gamma = view.half_size.x * view.half_size.y * (t0 + t1 + t2 + t3);
+  vec3 p = view.in_plane;
+  vec3 f = vec3(-beta * p.z, alpha * p.z, beta * p.x - alpha * p.y - gamma);
+  VectorFormFactor result;
+  result.size = length(f) * (0.5 / kPi);
+  result.height = dot(view.horizon, f) * (0.5 / kPi);
+  return result;
 }
 
 // Of the proxy sphere that has the same F, clipped at the horizon; ClippedSphere is the option "sphere".

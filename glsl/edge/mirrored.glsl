@@ -8,7 +8,7 @@ float EdgePolynomial(float u) {
   return 2.20234978 + u * (-0.907734599 + u * (0.362776993 + u * (-0.0993743546 + u * 0.0127784005)));
 }
 
-// Below any light's (length)⁴: 1e-30 is a light of 3e-8 m seen from as far. Keeps an edge through the point finite.
+// Added where a corner or an edge may go through the point, to stay finite: 1e-30 m⁴ is a light of 3e-8 m seen from as far.
 const float kSmallestEdge = 1e-30;
 
 // A corner as the edges want it: direction and length.
@@ -17,15 +17,15 @@ vec4 EdgeVertex(vec3 v) { return vec4(v, length(v)); }
 // θ/line, θ the angle between v0 and v1, from d = v0·v1 and m = |v0||v1|, where |v0 × v1| = share · line, line2 = line².
 float EdgeRatio(float d, float m, float share, float line2) {
   float q = m + abs(d);
-  float i = inversesqrt(max(m * q, kSmallestEdge));
+  float i = inversesqrt(m * q + kSmallestEdge);
   float acute = share * i * EdgePolynomial(q * i);
-  return d >= 0.0 ? acute : kPi * inversesqrt(max(line2, kSmallestEdge)) - acute;
+  return d >= 0.0 ? acute : kPi * inversesqrt(line2 + kSmallestEdge) - acute;
 }
 
 // θ itself; `area` = |v0 × v1|.
 float EdgeAngle(float d, float m, float area) {
   float q = m + abs(d);
-  float i = inversesqrt(max(m * q, kSmallestEdge));
+  float i = inversesqrt(m * q + kSmallestEdge);
   float acute = area * i * EdgePolynomial(q * i);
   return d >= 0.0 ? acute : kPi - acute;
 }
