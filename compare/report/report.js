@@ -48,7 +48,8 @@ function figure(v, digits = 3) {
 const signed = (text) => /^[-–]/.test(text) || text === "0" ? text.replace("-", "−") : "+" + text;
 const seconds = (s) => !known(s) ? "not timed" : s < 0.1 ? `${(1000 * s).toFixed(0)} ms` : s < 100 ? `${s.toFixed(2)} s` : `${(s / 60).toFixed(1)} min`;
 // 0 at 0.01 %, 1 at 100 %, by decades.
-const heat = (v) => known(v) && v > 0 ? clamp(Math.log10(v / 1e-4) / 4, 0, 1) : 0;
+const heat = (v) => known(v) && v > 0 ? clamp(Math.log10(v / 1e-4) / 4, 0, 1) ** 1.4 : 0;
+const hot = (v) => heat(v) > 0.8 ? " hottest" : heat(v) > 0.6 ? " hot" : "";
 
 // ---------------------------------------------------------------- colour
 
@@ -89,10 +90,10 @@ const NONFINITE = [255, 0, 255];
 const UNLIT = [84, 88, 95];
 const css = (c) => `rgb(${c[0]} ${c[1]} ${c[2]})`;
 
-// How far along the scale a relative difference lies: linear, or three decades below the range's end.
+// How far along the scale a relative difference lies: linear, or by the two decades below the range's end.
 function position(d, range, log) {
   const u = Math.abs(d) / range;
-  const t = log ? (u > 0 ? clamp((Math.log10(u) + 3) / 3, 0, 1) : 0) : Math.min(u, 1);
+  const t = log ? (u > 0 ? clamp((Math.log10(u) + 2) / 2, 0, 1) : 0) : Math.min(u, 1);
   return d < 0 ? -t : t;
 }
 function mapColor(kind, d, range, log) {
@@ -230,7 +231,7 @@ function paintMap(canvas, kind, a, b, lobe, floor, range, log) {
 
 // ---------------------------------------------------------------- state, kept in the address
 
-const state = { scene: "", a: "", b: TRUTH, lobe: "total", map: "signed", log: false, range: 0, ev: 0, wipe: 0.5,
+const state = { scene: "", a: "", b: TRUTH, lobe: "total", map: "signed", log: true, range: 0, ev: 0, wipe: 0.5,
                 zoom: 0, x: 0, y: 0, px: -1, py: -1, thumbs: "pictures", sort: "total", down: false };
 const DEFAULTS = { ...state };
 let scene = null;
@@ -281,6 +282,10 @@ function settle() {
     state.a = (ranked[0] || variantsOf(scene)[0] || { name: TRUTH }).name;
   }
   if (!usable(state.b)) state.b = scene.truth.stem ? TRUTH : state.a;
+  if (state.px < 0 || state.py < 0) {  // something to read from the start: where A is furthest off
+    const v = variantNamed(scene, state.a);
+    [state.px, state.py] = (v && v.error.total.max_pixel) || [scene.width >> 1, scene.height >> 1];
+  }
 }
 
 // ---------------------------------------------------------------- page furniture
@@ -315,8 +320,6 @@ function buildMasthead() {
     if (kept === "light" || kept === "dark") document.documentElement.dataset.theme = kept;
   } catch { /* as above */ }
 }
-
-function tiedCell(v) { return v.within_truth_error ? " tied" : ""; }
 
 function buildOverview() {
   const scenes = results.scenes, names = [];
@@ -353,7 +356,7 @@ function buildOverview() {
           continue;
         }
         const value = v.error[state.lobe].rel_rmse;
-        matrix.append(h("a", { class: "cell" + tiedCell(v), href: sceneLink(s.name, { a: name }), style: { "--t": heat(value) },
+        matrix.append(h("a", { class: "cell" + (v.within_truth_error ? " tied" : "") + hot(value), href: sceneLink(s.name, { a: name }), style: { "--t": heat(value) },
           title: `${s.name}, ${holder.short_name}: ${known(value) ? percent(value) + " %" : "not measured"}${v.within_truth_error ? ", within truth's own error" : ""}`,
           onclick: () => scrollToScene(), text: known(value) ? percent(value, true) : v.nonfinite_pixels ? "NaN" : "–" }));
       }
@@ -464,7 +467,7 @@ function buildThumbs(s) {
     map.className = "shot";
     const error = h("span", { class: "err" });
     const box = h("div", { class: "thumb" },
-      h("button", { type: "button", title: v.summary || "ground truth", onclick: () => set({ a: v.name }) }, picture, map,
+      h("button", { type: "button", class: "open", title: v.summary || "ground truth", onclick: () => set({ a: v.name }) }, picture, map,
         h("span", { class: "cap" }, h("span", { class: "who", text: label(s, v.name) }), error)),
       h("button", { type: "button", class: "pick", text: "B", title: `Show ${label(s, v.name)} as B`, "aria-label": `Show ${label(s, v.name)} as B`, onclick: () => set({ b: v.name }) }));
     ui.thumbs.set(v.name, { box, picture, map, error, painted: "" });
@@ -483,7 +486,7 @@ const COLUMNS = [
   ["relmse", "relMSE", (v) => v.error.total.relmse],
   ["mae", "MAE", (v) => v.error.total.mae],
   ["p99", "p99", (v) => v.error.total.p99],
-  ["max", "max, at pixel", (v) => v.error.total.max],
+  ["max", "max", (v) => v.error.total.max],
   ["flip", "FLIP", (v) => v.error.total.flip],
   ["nonfinite", "non-finite", (v) => v.nonfinite_pixels],
   ["time", "time × point", (v) => v.time.ratio_to_point],
@@ -525,7 +528,7 @@ function buildTable(s) {
         }
         if (key === "max") {
           const at = e.total.max_pixel;
-          return h("td", { "data-label": title }, h("span", {}, figure(e.total.max), " ", at ? h("button", { type: "button", class: "link", text: `(${at[0]}, ${at[1]})`,
+          return h("td", { "data-label": title }, h("span", {}, figure(e.total.max), " ", at ? h("button", { type: "button", class: "link at", text: `(${at[0]}, ${at[1]})`,
             title: "Show this pixel", onclick: () => { set({ a: v.name, b: scene.truth.stem ? TRUTH : state.b, px: at[0], py: at[1] }); zoomTo(8, at[0] + 0.5, at[1] + 0.5); scrollToScene(); } }) : ""));
         }
         return h("td", { "data-label": title, class: key === "nonfinite" && v.nonfinite_pixels ? "bad" : null,
@@ -552,7 +555,7 @@ function buildPairs(s) {
     for (const b of names) {
       const v = value.get(JSON.stringify([a, b]));
       if (a === b) { matrix.append(h("span", { class: "cell quiet", text: "·" })); continue; }
-      const cell = h("button", { type: "button", class: "cell", style: { "--t": heat(v) }, text: percent(v, true),
+      const cell = h("button", { type: "button", class: "cell" + hot(v), style: { "--t": heat(v) }, text: percent(v, true),
         title: `${label(s, a)} relative to ${label(s, b)}: ${known(v) ? percent(v) + " %" : "not measured"}`, onclick: () => { set({ a, b }); scrollToScene(); } });
       ui.cells.push({ cell, a, b });
       matrix.append(cell);
@@ -571,7 +574,7 @@ function buildPairs(s) {
 function buildPlot(s) {
   const points = variantsOf(s).map((v) => ({ v, x: v.time.ratio_to_point, y: v.error.total.rel_rmse })).filter((p) => known(p.x) && known(p.y) && p.x > 0 && p.y > 0);
   if (points.length < 2) return null;
-  const W = 560, H = 380, left = 62, right = 18, top = 16, bottom = 48;
+  const W = 560, H = 380, left = 78, right = 18, top = 16, bottom = 48;
   const lo = (list) => Math.min(...list), hi = (list) => Math.max(...list);
   const xs = points.map((p) => Math.log10(p.x)), ys = points.map((p) => Math.log10(p.y));
   const x0 = lo(xs) - 0.08, x1 = hi(xs) + 0.3, y0 = Math.floor(lo(ys) - 0.1), y1 = Math.ceil(hi(ys) + 0.1);
@@ -591,6 +594,10 @@ function buildPlot(s) {
   svg.append(h("path", { class: "front", d: front.map((p, i) => `${i ? "H" + X(p.x) + "V" + Y(p.y) : `M${X(p.x)} ${Y(p.y)}`}`).join("") }));
   // Labels go to the right of their dot, or where the first free place is.
   const taken = points.map((p) => [X(p.x) - 7, Y(p.y) - 7, 14, 14]);
+  front.slice(1).forEach((p, i) => {
+    const q = front[i];
+    taken.push([X(q.x), Y(q.y) - 1, X(p.x) - X(q.x), 2], [X(p.x) - 1, Y(q.y), 2, Y(p.y) - Y(q.y)]);
+  });
   for (const p of order) {
     const text = p.v.short_name || p.v.name, w = 7.6 * text.length, cx = X(p.x), cy = Y(p.y);
     const places = [[cx + 9, cy - 7], [cx - 9 - w, cy - 7], [cx - w / 2, cy - 23], [cx - w / 2, cy + 9], [cx + 9, cy - 21], [cx + 9, cy + 7], [cx - 9 - w, cy - 21], [cx - 9 - w, cy + 7]];
@@ -819,27 +826,26 @@ function drawLegend() {
   }
   bar.putImageData(pixels, 0, 0);
   const r = range(), text = (v) => `${Number((100 * v).toPrecision(3))}`;
-  let marks = state.log ? [[1, r], [2 / 3, r / 10], [1 / 3, r / 100]] : [[1, r], [0.5, r / 2]];
-  if (state.map === "signed") marks = [...marks.map(([t, v]) => [0.5 - t / 2, -v]), [0.5, 0], ...marks.map(([t, v]) => [0.5 + t / 2, v])];
-  else marks = [[0, state.log ? r / 1000 : 0], ...marks];
-  marks.sort((p, q) => p[0] - q[0]);
-  // Six percentages of a log scale do not fit side by side on a phone: only the decades' ends keep theirs.
-  const sparse = state.log && state.map === "signed" && ui.right.box.clientWidth < 430;
-  ui.ticks.replaceChildren(...marks.filter((m, i) => !sparse || i % 3 === 0).map(([t, v]) => h("span", { style: { left: `${100 * t}%` },
-    text: (v > 0 && state.map === "signed" ? "+" : v < 0 ? "−" : "") + text(Math.abs(v)) + " %" })));
+  let marks = state.log ? [[1, r], [0.5, r / 10]] : [[1, r], [0.5, r / 2]];
+  if (state.map === "signed") marks = [...marks.map(([t, v]) => [0.5 - t / 2, -v]), [0.5, state.log ? r / 100 : 0], ...marks.map(([t, v]) => [0.5 + t / 2, v])];
+  else marks = [[0, state.log ? r / 100 : 0], ...marks];
+  ui.ticks.replaceChildren(...marks.map(([t, v]) => {
+    const least = state.log && t === (state.map === "signed" ? 0.5 : 0);
+    return h("span", { style: { left: `${100 * t}%` }, text: (least ? "< " : v > 0 && state.map === "signed" ? "+" : v < 0 ? "−" : "") + text(Math.abs(v)) + " %" });
+  }));
   const b = label(scene, state.b), a = label(scene, state.a), f = floorOf();
   ui.legendText.textContent = (state.map === "signed"
     ? `(Y(A) − Y(B)) / max(Y(B), floor), Y luminance: blue where ${a} is darker than ${b}, orange where brighter. `
     : `Largest channel of |A − B| / max(Y(B), floor), Y luminance. `) +
-    `Floor ${figure(f)} ${scene.unit || ""}, 1 % of truth's mean.${state.log ? " Logarithmic, three decades." : ""} Beyond the ends: the end's colour.`;
+    `Floor ${figure(f)} ${scene.unit || ""}, 1 % of truth's mean.${state.log ? " Logarithmic, two decades." : ""} Beyond the ends: the end's colour.`;
 }
 
 function drawValues() {
   const inside = state.px >= 0 && state.px < scene.width && state.py >= 0 && state.py < scene.height;
-  ui.where.textContent = inside ? `x ${state.px}, y ${state.py}` : "none yet";
+  ui.where.textContent = inside ? `x ${state.px}, y ${state.py}` : "point at a picture";
   const i = inside ? state.py * scene.width + state.px : 0, truth = images.get(TRUTH), v = [0, 0, 0], t = [0, 0, 0];
   const reference = images.get(state.b) || truth;
-  const rows = [h("div", { class: "top" }, h("span"), h("span", { text: "luminance" }), h("span", { class: "num", text: scene.unit || "" }), h("span", { class: "num", text: "vs B" }))];
+  const rows = [h("div", { class: "top" }, h("span"), h("span", { text: state.lobe }), h("span", { class: "num", text: "luminance" }), h("span", { class: "num", text: "vs B" }))];
   for (const name of ui.thumbs.keys()) {
     const image = images.get(name), role = name === state.a ? " is-a" : name === state.b ? " is-b" : "";
     const swatch = h("span", { class: "swatch" });

@@ -1,0 +1,461 @@
+// The report's folder: the schema, what the page is given against what the EXRs hold, hostile names, replacing as a whole.
+#include "compare/report.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "compare/image_files.h"
+#include "compare/page_data.h"
+#include "scenes/error.h"
+#include "tests/compare/synthetic_results.h"
+
+namespace arealab {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class Folder {  // removed at the end
+ public:
+  Folder() : path_(fs::temp_directory_path() / fmt::format("arealab_report_test_{}", getpid())) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string Read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  EXPECT_TRUE(stream) << file;
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+const Results& Small() {
+  static const Results results = [] {
+    synthetic::Style warm;
+    warm.radiance = {6.0, 5.0, 3.7};
+    warm.base_color = {0.6, 0.4, 0.3};
+    std::vector<SceneResult> scenes = {
+        synthetic::MakeScene("gloss", "How does the reflection change?", {}, {48, 36, 6}),
+        synthetic::MakeScene("warm", "Does colour survive?", warm, {48, 36, 6})};
+    return synthetic::MakeResults(scenes);
+  }();
+  return results;
+}
+
+// An independent reading of compare/page_data.h: the half bits of the six planes.
+struct PageImage {
+  std::string key;
+  int width = 0, height = 0, exponent = 0;
+  std::vector<std::vector<std::uint16_t>> planes{6};
+};
+
+PageImage DecodePage(const std::string& script) {
+  const std::string head = "arealabImage(";
+  EXPECT_EQ(script.compare(0, head.size(), head), 0);
+  EXPECT_EQ(script.find('<'), std::string::npos);
+  const json arguments = json::parse("[" + script.substr(head.size(), script.rfind(')') - head.size()) + "]");
+  PageImage image;
+  image.key = arguments[0];
+  image.width = arguments[1]["width"];
+  image.height = arguments[1]["height"];
+  image.exponent = arguments[1]["exponent"];
+  const std::string text = arguments[2], alphabet =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> packed;
+  unsigned bits = 0;
+  int held = 0;
+  for (char c : text) {
+    if (c == '=') break;
+    bits = (bits << 6) | static_cast<unsigned>(alphabet.find(c));
+    held += 6;
+    if (held >= 8) {
+      held -= 8;
+      packed.push_back(static_cast<unsigned char>((bits >> held) & 255));
+    }
+  }
+  const std::size_t size = static_cast<std::size_t>(image.width * image.height);
+  std::vector<unsigned char> bytes(12 * size);
+  uLongf length = static_cast<uLongf>(bytes.size());
+  EXPECT_EQ(uncompress(bytes.data(), &length, packed.data(), static_cast<uLong>(packed.size())), Z_OK);
+  std::size_t at = 0;
+  for (std::size_t lobe = 0; lobe < 2; ++lobe) {
+    for (std::size_t channel : {1u, 0u, 2u}) {
+      auto& plane = image.planes[3 * lobe + channel];
+      const std::string mode = arguments[1]["planes"][3 * lobe + channel];
+      if (mode == "=g") {
+        plane = image.planes[3 * lobe + 1];
+        continue;
+      }
+      plane.resize(size);
+      for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+          const auto get = [&](int u, int v) {
+            return u < 0 || v < 0 ? 0 : static_cast<int>(plane[static_cast<std::size_t>(v * image.width + u)]);
+          };
+          const std::size_t i = static_cast<std::size_t>(y * image.width + x);
+          const int z = bytes[at + i] + 256 * bytes[at + size + i];
+          const int residual = z % 2 == 0 ? z / 2 : -(z + 1) / 2;
+          const int corner = x > 0 && y > 0 ? get(x - 1, y - 1) : 0;
+          plane[i] = static_cast<std::uint16_t>((residual + get(x - 1, y) + get(x, y - 1) - corner) & 0xFFFF);
+        }
+      }
+      at += 2 * size;
+      if (mode == "-g") {
+        const auto& green = image.planes[3 * lobe + 1];
+        for (std::size_t i = 0; i < size; ++i) plane[i] = static_cast<std::uint16_t>((plane[i] + green[i]) & 0xFFFF);
+      }
+    }
+  }
+  EXPECT_EQ(at, length);
+  return image;
+}
+
+void ExpectSameBits(float a, float b) {
+  if (std::isnan(a) && std::isnan(b)) return;
+  EXPECT_EQ(a, b);
+}
+
+TEST(Images, PageAndExrHoldTheSameValuesWithinHalfPrecision) {
+  const Folder folder;
+  WriteReport(Small(), folder / "report");
+  for (const SceneResult& scene : Small().scenes) {
+    for (const VariantResult& variant : scene.variants) {
+      if (!variant.image) continue;
+      const std::string path = scene.name + "/" + variant.name;
+      const PageImage page = DecodePage(Read(folder / ("report/data/" + path + ".js")));
+      EXPECT_EQ(page.key, path);
+      HalfImage half;
+      half.width = page.width;
+      half.height = page.height;
+      half.exponent = page.exponent;
+      for (std::size_t p = 0; p < 6; ++p) half.planes[p] = page.planes[p];
+      const RadianceImage shown = FromHalf(half), stored = ReadExr(folder / ("report/images/" + path + ".exr"));
+      ASSERT_EQ(stored.size(), variant.image->size());
+      for (std::size_t i = 0; i < stored.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_EQ(shown.diffuse[i][c], stored.diffuse[i][c]);
+          ASSERT_EQ(shown.specular[i][c], stored.specular[i][c]);
+          const float exact = variant.image->specular[i][c];
+          ASSERT_NEAR(stored.specular[i][c], exact, std::abs(exact) * 0x1p-11f + 0x1p-24f);  // half an ulp, and the subnormal step
+        }
+      }
+      EXPECT_TRUE(fs::exists(folder / ("report/images/" + path + ".png")));
+    }
+  }
+}
+
+TEST(Images, BrightDimAndBrokenValuesSurvive) {
+  const Folder folder;
+  RadianceImage image{2, 2, {}, {}};
+  image.diffuse = {{1e6f, 2e6f, 3e6f}, {1.0f, 1.0f, 1.0f}, {0.0f, -0.0f, 5e5f}, {7e5f, 1.0f, 100.0f}};
+  image.specular.assign(4, glm::vec3(0.25f));
+  image.specular[3] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2.0f};
+  for (float scale : {1.0f, 1e-9f}) {
+    RadianceImage scaled = image;
+    for (auto* lobe : {&scaled.diffuse, &scaled.specular}) {
+      for (glm::vec3& v : *lobe) v *= scale;
+    }
+    const HalfImage half = ToHalf(scaled);
+    EXPECT_NE(half.exponent, 0);
+    WriteExr(folder / "x.exr", half);
+    const RadianceImage back = ReadExr(folder / "x.exr"), shown = FromHalf(half);
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        ExpectSameBits(back.diffuse[i][c], shown.diffuse[i][c]);
+        ExpectSameBits(back.specular[i][c], shown.specular[i][c]);
+        EXPECT_NEAR(back.diffuse[i][c] / scale, image.diffuse[i][c], image.diffuse[i][c] * 0x1p-11f);
+      }
+    }
+    EXPECT_TRUE(std::isnan(back.specular[3].x));
+    EXPECT_TRUE(std::isinf(back.specular[3].y));
+  }
+}
+
+TEST(Images, UnroundedExrIsExact) {
+  const Folder folder;
+  const RadianceImage& image = *Small().scenes[1].truth;
+  WriteExr(folder / "x.exr", image);
+  const RadianceImage back = ReadExr(folder / "x.exr");
+  EXPECT_EQ(back.diffuse, image.diffuse);
+  EXPECT_EQ(back.specular, image.specular);
+  EXPECT_THROW(WriteExr(folder / "missing/x.exr", image), InputError);
+  EXPECT_THROW(ReadExr(folder / "none.exr"), InputError);
+}
+
+TEST(Images, GreyLayersAreOneChannel) {
+  const SceneResult &grey = Small().scenes[0], &warm = Small().scenes[1];
+  EXPECT_TRUE(ToHalf(*grey.truth).IsGray(0) && ToHalf(*grey.truth).IsGray(1));
+  EXPECT_FALSE(ToHalf(*warm.truth).IsGray(0) || ToHalf(*warm.truth).IsGray(1));
+  EXPECT_LT(2 * EncodePageImage("k", ToHalf(*grey.truth)).size(), EncodePageImage("k", ToHalf(*warm.truth)).size());
+}
+
+TEST(ResultsFile, FollowsTheSchema) {
+  const json all = json::parse(ResultsJson(Small()));
+  EXPECT_EQ(all["schema"], 1);
+  EXPECT_EQ(all["command"], Small().command);
+  EXPECT_EQ(all["machine"]["cores"], "2");
+  EXPECT_TRUE(all["renderer"].is_string());
+  const json& scene = all["scenes"][0];
+  for (const char* key : {"name", "width", "height", "effects", "lit_pixels", "truth", "variants", "pairs"}) {
+    EXPECT_TRUE(scene.contains(key)) << key;
+  }
+  EXPECT_EQ(scene["truth"]["cached"], false);
+  EXPECT_NEAR(scene["truth"]["relative_error"].get<double>(), 8.4e-5, 1e-12);
+  const json& variant = scene["variants"][0];
+  for (const char* lobe : {"total", "diffuse", "specular"}) {
+    for (const char* key : {"rel_rmse", "bias", "relmse", "mae", "p99", "max", "flip"}) {
+      EXPECT_TRUE(variant["error"][lobe].contains(key)) << lobe << " " << key;
+    }
+  }
+  EXPECT_TRUE(variant["error"]["diffuse"]["flip"].is_null());  // measured for the total only
+  EXPECT_TRUE(variant["error"]["split"]["model"].is_null());
+  EXPECT_EQ(variant["time"]["ratio_interval"].size(), 2u);
+  EXPECT_EQ(variant["reason"], nullptr);
+  const json& refused = scene["variants"].back();
+  EXPECT_EQ(refused["supported"], false);
+  EXPECT_TRUE(refused["error"]["total"]["rel_rmse"].is_null());
+  EXPECT_TRUE(refused["time"]["ratio_interval"].is_null());
+  EXPECT_EQ(scene["pairs"].size(), 9u * 8u);
+  EXPECT_EQ(scene["pairs"][0]["a"], "point");
+}
+
+// As RFC 4180 says.
+std::vector<std::vector<std::string>> ParseCsv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows(1, std::vector<std::string>(1));
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+      rows.back().back() += '"';
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && c == ',') {
+      rows.back().emplace_back();
+    } else if (!quoted && c == '\n') {
+      if (i + 1 < text.size()) rows.emplace_back(1);
+    } else if (quoted || c != '\r') {
+      rows.back().back() += c;
+    }
+  }
+  return rows;
+}
+
+TEST(ResultsFile, CsvHasOneRowPerSceneVariantAndLobe) {
+  Results results = Small();
+  results.scenes[0].variants.back().reason = "says \"no\", twice\nand more";
+  const auto rows = ParseCsv(ResultsCsv(results));
+  ASSERT_EQ(rows.size(), 1u + 2u * 10u * 3u);
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+  EXPECT_EQ(rows[0][0], "scene");
+  EXPECT_EQ(rows[1][1], "point");
+  EXPECT_NEAR(std::stod(rows[1][4]), results.scenes[0].variants[0].total.rel_rmse, 1e-8);
+  EXPECT_EQ(rows[30].back(), "says \"no\", twice\nand more");
+  EXPECT_EQ(rows[30][4], "");
+}
+
+TEST(ResultsFile, SummaryIsSortedAndAligned) {
+  const std::string table = SummaryTable(Small().scenes[0]);
+  std::vector<std::string> lines;
+  std::stringstream stream(table);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 2u + 10u);
+  EXPECT_NE(lines[2].find("reference"), std::string::npos);
+  EXPECT_NE(lines[2].find("within truth's error"), std::string::npos);
+  std::vector<std::pair<double, std::string>> order;
+  for (const VariantResult& v : Small().scenes[0].variants) {
+    if (v.supported) order.emplace_back(v.total.rel_rmse, v.short_name);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(lines[i + 2].find("  " + order[i].second + " "), 0u) << lines[i + 2];
+  EXPECT_NE(lines[11].find("lightfield"), std::string::npos);
+  EXPECT_NE(lines[11].find("not supported: lightfield shades rectangles only"), std::string::npos);
+  // The error column ends where its heading does, in every row that has figures.
+  const std::size_t end = lines[1].find("error %") + std::string("error %").size();
+  for (std::size_t i = 2; i < 11; ++i) {
+    EXPECT_NE(lines[i][end - 1], ' ') << lines[i];
+    EXPECT_EQ(lines[i][end], ' ') << lines[i];
+  }
+}
+
+// Names that a scene file could bring along.
+Results Hostile() {
+  const std::string markup = "</script><img src=x onerror=\"window.injected=1\"><b>bold</b>&amp;'\"";
+  Results results = Small();
+  results.command = "arealab compare '" + markup + "'";
+  results.machine["os"] = markup;
+  SceneResult& scene = results.scenes[1];
+  scene.name = "../" + markup;
+  scene.question = markup + "\xE2\x80\xA8line";
+  scene.file = markup;
+  scene.unit = "W/(m² sr)";
+  scene.effects = {markup};
+  scene.variants.back().reason = markup;
+  scene.variants[1].summary = scene.variants[1].citation = scene.variants[1].note = markup;
+  scene.variants[2].name = scene.variants[2].short_name = "a\xFFname\n" + markup;  // and not even UTF-8
+  scene.variants[3].name = "..";
+  scene.pairs.clear();
+  return results;
+}
+
+TEST(Report, HostileNamesStayTextAndInsideTheFolder) {
+  const Folder folder;
+  WriteReport(Hostile(), folder / "report");
+  const std::string page = Read(folder / "report/index.html");
+  EXPECT_EQ(page.find("<img src=x"), std::string::npos);
+  const auto count = [&](const std::string& what) {
+    int n = 0;
+    for (std::size_t at = page.find(what); at != std::string::npos; at = page.find(what, at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(count("</script>"), 2);
+  const std::size_t begin = page.find("id=\"results\">") + 13;
+  const json data = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  EXPECT_EQ(data["scenes"][1]["question"], Hostile().scenes[1].question);
+  for (const auto& entry : fs::directory_iterator(folder.path())) EXPECT_EQ(entry.path().filename(), "report");
+  for (const char* kind : {"images", "data"}) {
+    const fs::path inside = folder / "report" / kind;
+    int folders = 0, files = 0;
+    for (const auto& entry : fs::directory_iterator(inside)) folders += entry.is_directory() ? 1 : 0;
+    for (const auto& entry : fs::recursive_directory_iterator(inside)) files += entry.is_regular_file() ? 1 : 0;
+    EXPECT_EQ(folders, 2);
+    EXPECT_EQ(files, 20 * (kind[0] == 'i' ? 2 : 1) + (kind[0] == 'd' ? 2 : 0));  // truth and nine variants, twice; emission
+  }
+}
+
+TEST(Report, EqualFileNamesAreToldApart) {
+  const Folder folder;
+  Results results = Small();
+  results.scenes[1].name = "gloss";
+  results.scenes[1].variants[0].name = "truth";
+  results.scenes[1].variants[1].name = "a/b";
+  results.scenes[1].variants[2].name = "a:b";
+  WriteReport(results, folder / "report");
+  for (const char* file : {"gloss/point.exr", "gloss-2/truth.exr", "gloss-2/truth-2.exr", "gloss-2/a_b.exr", "gloss-2/a_b-2.exr"}) {
+    EXPECT_TRUE(fs::exists(folder / "report/images" / file)) << file;
+  }
+}
+
+TEST(Report, ReplacesAnEarlierReportAsAWhole) {
+  const Folder folder;
+  WriteReport(Small(), folder / "report/");
+  std::ofstream(folder / "report/left-over") << "from the first";
+  // As an interrupted run leaves it: a process of that number cannot live.
+  fs::create_directories(folder / ".report.partial-999999999/images");
+  std::vector<double> progress;
+  WriteReport(Small(), folder / "report", [&](double fraction) { progress.push_back(fraction); });
+  EXPECT_TRUE(fs::exists(folder / "report/index.html"));
+  EXPECT_FALSE(fs::exists(folder / "report/left-over"));
+  int entries = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path())) ++entries;
+  EXPECT_EQ(entries, 1);
+  ASSERT_FALSE(progress.empty());
+  EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
+  EXPECT_EQ(progress.back(), 1.0);
+}
+
+TEST(Report, RefusesAFolderThatHoldsSomethingElse) {
+  const Folder folder;
+  fs::create_directories(folder / "home");
+  std::ofstream(folder / "home/thesis.txt") << "irreplaceable";
+  EXPECT_THROW(CheckReportDirectory(folder / "home"), InputError);
+  EXPECT_THROW(WriteReport(Small(), folder / "home"), InputError);
+  EXPECT_EQ(Read(folder / "home/thesis.txt"), "irreplaceable");
+  EXPECT_THROW(CheckReportDirectory(folder / "home/thesis.txt"), InputError);
+  EXPECT_THROW(CheckReportDirectory("/proc/none/report"), InputError);
+  CheckReportDirectory(folder / "new/deep/report");
+  EXPECT_TRUE(fs::is_directory(folder / "new/deep"));
+}
+
+TEST(Report, OneUnshadedSceneAndNone) {
+  const Folder folder;
+  Results results = synthetic::MakeResults({});
+  WriteReport(results, folder / "empty");
+  SceneResult scene;
+  scene.name = "bare";
+  scene.width = scene.height = 4;
+  results.scenes = {scene};
+  WriteReport(results, folder / "bare");
+  EXPECT_TRUE(fs::exists(folder / "bare/index.html"));
+}
+
+// Relative differences as the page defines them, from the values in the EXRs.
+json Expected(const fs::path& report, const SceneResult& scene) {
+  const auto lobe_of = [](const RadianceImage& image, const std::string& lobe, std::size_t i) {
+    return glm::dvec3(lobe == "diffuse" ? image.diffuse[i] : lobe == "specular" ? image.specular[i] : glm::vec3(0.0f)) +
+           (lobe == "total" ? glm::dvec3(image.diffuse[i]) + glm::dvec3(image.specular[i]) : glm::dvec3(0.0));
+  };
+  const auto luminance = [](const glm::dvec3& v) { return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z; };
+  json expected = json::array();
+  for (const auto& [a, b] : {std::pair("ltc", "truth"), std::pair("drobot", "hill"), std::pair("point", "truth")}) {
+    const RadianceImage image_a = ReadExr(report / "images" / scene.name / (std::string(a) + ".exr"));
+    const RadianceImage image_b = ReadExr(report / "images" / scene.name / (std::string(b) + ".exr"));
+    for (const std::string lobe : {"total", "diffuse", "specular"}) {
+      double floor = 0.0;
+      int lit = 0;
+      for (std::size_t i = 0; i < scene.truth->size(); ++i) {
+        const double y = luminance(lobe_of(*scene.truth, lobe, i));
+        floor += y;
+        lit += y > 0.0 ? 1 : 0;
+      }
+      floor *= 0.01 / lit;
+      for (std::size_t i = 5; i < image_a.size(); i += 131) {
+        const glm::dvec3 va = lobe_of(image_a, lobe, i), vb = lobe_of(image_b, lobe, i), d = glm::abs(va - vb);
+        if (va == glm::dvec3(0.0) && vb == glm::dvec3(0.0)) continue;
+        const double base = std::max(luminance(vb), floor);
+        expected.push_back({{"scene", scene.name}, {"a", a}, {"b", b}, {"lobe", lobe}, {"floor", floor},
+                            {"x", i % static_cast<std::size_t>(scene.width)}, {"y", i / static_cast<std::size_t>(scene.width)},
+                            {"signed", (luminance(va) - luminance(vb)) / base},
+                            {"magnitude", std::max({d.x, d.y, d.z}) / base}});
+      }
+    }
+  }
+  return expected;
+}
+
+// What report_page_test.py opens: AREALAB_REPORT_SAMPLE names its folder.
+TEST(Report, WritesTheSampleForThePageTest) {
+  const Folder folder;
+  const char* sample = std::getenv("AREALAB_REPORT_SAMPLE");
+  const fs::path root = sample != nullptr ? fs::path(sample) : folder / "sample";
+  Results results = Small();
+  results.scenes.push_back(Hostile().scenes[1]);
+  results.scenes.back().exposure = 1.0;
+  {  // a variant that yields NaN
+    VariantResult& broken = results.scenes[1].variants[1];
+    auto image = std::make_shared<RadianceImage>(*broken.image);
+    for (std::size_t i = 0; i < 48; ++i) image->specular[24 * 48 + i].y = std::numeric_limits<float>::quiet_NaN();
+    broken.image = image;
+    Measure(*results.scenes[1].truth, nullptr, &broken);
+  }
+  WriteReport(results, root / "report");
+  const json expected = Expected(root / "report", results.scenes[0]);
+  EXPECT_GT(expected.size(), 30u);
+  std::ofstream(root / "expected.json") << expected.dump();
+  EXPECT_TRUE(fs::exists(root / "report/index.html"));
+}
+
+}  // namespace
+}  // namespace arealab
