@@ -36,7 +36,7 @@ function percent(v, tight) {
   if (m === 0) return "0";
   if (tight) return m >= 999.5 ? "999+" : m >= 9.95 ? p.toFixed(0) : m >= 0.995 ? p.toFixed(1) : m >= 0.005 ? p.toFixed(2) : "0.00";
   if (m >= 1e4) return p.toExponential(1).replace("e+", "e");
-  return m >= 99.95 ? p.toFixed(0) : m >= 9.995 ? p.toFixed(1) : m >= 0.9995 ? p.toFixed(2) : m >= 0.001 ? p.toFixed(3) : p.toExponential(1);
+  return m >= 99.95 ? p.toFixed(0) : m >= 9.995 ? p.toFixed(1) : m >= 0.9995 ? p.toFixed(2) : m >= 0.0995 ? p.toFixed(3) : m >= 1e-4 ? p.toPrecision(2) : p.toExponential(1);
 }
 function figure(v, digits = 3) {
   if (!known(v)) return "–";
@@ -572,7 +572,10 @@ function buildPairs(s) {
 
 // Error against time, both by decades; the line joins those that nothing beats in both.
 function buildPlot(s) {
-  const points = variantsOf(s).map((v) => ({ v, x: v.time.ratio_to_point, y: v.error.total.rel_rmse })).filter((p) => known(p.x) && known(p.y) && p.x > 0 && p.y > 0);
+  // What is within truth's error is drawn at it: nobody knows how much better it is.
+  const limit = s.truth.relative_error;
+  const points = variantsOf(s).map((v) => ({ v, x: v.time.ratio_to_point, y: v.within_truth_error && known(limit) ? limit : v.error.total.rel_rmse }))
+    .filter((p) => known(p.x) && known(p.y) && p.x > 0 && p.y > 0);
   if (points.length < 2) return null;
   const W = 560, H = 380, left = 78, right = 18, top = 16, bottom = 48;
   const lo = (list) => Math.min(...list), hi = (list) => Math.max(...list);
@@ -589,6 +592,9 @@ function buildPlot(s) {
     svg.append(h("line", { class: "grid", x1: X(t), x2: X(t), y1: top, y2: H - bottom }), h("text", { x: X(t), y: H - bottom + 18, "text-anchor": "middle", text: `${t}×` }));
   }
   svg.append(h("text", { x: (left + W - right) / 2, y: H - 8, "text-anchor": "middle", text: "time of the lighting pass relative to point" }));
+  if (known(limit) && Math.log10(limit) >= y0 && Math.log10(limit) <= y1) {
+    svg.append(h("line", { class: "limit", x1: left, x2: W - right, y1: Y(limit), y2: Y(limit) }), h("text", { x: left + 6, y: Y(limit) + 15, text: "truth's own error" }));
+  }
   const order = [...points].sort((p, q) => p.x - q.x || p.y - q.y);
   const front = order.filter((p, i) => order.slice(0, i).every((q) => q.y > p.y));
   svg.append(h("path", { class: "front", d: front.map((p, i) => `${i ? "H" + X(p.x) + "V" + Y(p.y) : `M${X(p.x)} ${Y(p.y)}`}`).join("") }));
@@ -873,7 +879,7 @@ function drawThumbs() {
     const v = variantNamed(scene, name);
     thumb.box.classList.toggle("is-a", name === state.a);
     thumb.box.classList.toggle("is-b", name === state.b);
-    thumb.error.textContent = name === TRUTH ? "reference" : known(v.error[state.lobe].rel_rmse) ? percent(v.error[state.lobe].rel_rmse) + " %" : v.nonfinite_pixels ? "non-finite" : "–";
+    thumb.error.textContent = name === TRUTH ? (known(scene.truth.relative_error) ? `± ${percent(scene.truth.relative_error)} %` : "") : known(v.error[state.lobe].rel_rmse) ? percent(v.error[state.lobe].rel_rmse) + " %" : v.nonfinite_pixels ? "non-finite" : "–";
     const pictures = state.thumbs === "pictures" && state.lobe === "total" && state.ev === 0;
     thumb.picture.hidden = !pictures;
     thumb.map.hidden = pictures;
