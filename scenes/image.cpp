@@ -38,8 +38,9 @@ std::shared_ptr<const Image> Read(const std::string& file, const std::string& na
   }
   if (!input) {
     OIIO::geterror();  // clears the library's pending message
-    throw InputError(
-        fmt::format("'{}' is not an image; expected a PNG, JPEG, EXR, HDR, TGA or TIFF file", name));
+    throw InputError(fmt::format(
+        "'{}' is not an image that can be read; expected a whole PNG, JPEG, EXR, HDR, TGA or TIFF file",
+        name));
   }
   const OIIO::ImageSpec spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide) {

@@ -127,7 +127,8 @@ std::vector<BadScene> BadScenes() {
       {"TextureMissing", Material("name = \"grey\"\nbase_color_texture = \"wood.png\" #HERE\n"),
        "no file 'wood.png'; expected a file in the scene's folder"},
       {"TextureNotAnImage", Material("name = \"grey\"\nbase_color_texture = \"not_an_image.png\" #HERE\n"),
-       "'not_an_image.png' is not an image; expected a PNG, JPEG, EXR, HDR, TGA or TIFF file"},
+       "'not_an_image.png' is not an image that can be read; expected a whole PNG, JPEG, EXR, HDR, TGA or "
+       "TIFF file"},
       {"TextureLeavesFolder", Material("name = \"grey\"\nnormal_texture = \"../secret.png\" #HERE\n"),
        "'../secret.png' leaves the scene's folder; expected a path inside it, links followed"},
       {"TextureLeavesByLink", Material("name = \"grey\"\nmetallic_roughness_texture = \"link.png\" #HERE\n"),
