@@ -36,6 +36,14 @@ double NodeRoughness(int column, int size) {
   return static_cast<double>(column) / (size - 1);
 }
 
+// Undoes the mirror frame, where the kind has one.
+glm::dvec4 ToLocal(FitKind kind, double cosine, const glm::dvec4& stored) {
+  if (kind == FitKind::kPublished) return stored;
+  const fit::Whitening mirror{-std::sqrt((1.0 - cosine) * (1.0 + cosine)), cosine, 1.0, 1.0};
+  const fit::Terms m = mirror.ToLocal(fit::Terms(stored.x, stored.y, stored.z, stored.w));
+  return {m[0], m[1], m[2], m[3]};
+}
+
 void Store(const View& view, const Cell& cell, std::size_t texel, LtcTables* tables) {
   const bool mirror = tables->kind != FitKind::kPublished;
   const fit::Whitening frame = mirror ? fit::Whitening{-view.sine, view.cosine, 1.0, 1.0} : fit::Whitening{};
@@ -191,15 +199,12 @@ LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v) {
     return (at(0, 0) * (1.0 - fx) + at(0, 1) * fx) * (1.0 - fy) +
            (at(1, 0) * (1.0 - fx) + at(1, 1) * fx) * fy;
   };
-  LtcLookup lookup{mix(tables.matrix), mix(tables.terms)};
-  if (tables.kind != FitKind::kPublished) {
-    const View view = fit::MakeView(roughness, n_dot_v);
-    const glm::dvec4 m = lookup.m;
-    const fit::Whitening mirror{-view.sine, view.cosine, 1.0, 1.0};
-    const fit::Terms local = mirror.ToLocal(fit::Terms(m.x, m.y, m.z, m.w));
-    lookup.m = {local[0], local[1], local[2], local[3]};
-  }
-  return lookup;
+  return {ToLocal(tables.kind, std::clamp(n_dot_v, 0.0, 1.0), mix(tables.matrix)), mix(tables.terms)};
+}
+
+glm::dvec4 NodeMatrix(const LtcTables& tables, int row, int column) {
+  return ToLocal(tables.kind, NodeCosine(tables.kind, row, tables.size),
+                 tables.matrix[static_cast<std::size_t>(row * tables.size + column)]);
 }
 
 double ClippedSphere(double y, double l) {

@@ -56,9 +56,12 @@ struct LtcLookup {
 };
 LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v);
 
+// M⁻¹ of a node, in the local frame.
+glm::dvec4 NodeMatrix(const LtcTables& tables, int row, int column);
+
 struct FitOptions {
   int size = 64;                    // nodes per axis, at least 2
-  int rectangles = 300;             // of the polygon loss, per cell
+  int rectangles = 400;             // of the polygon loss, per cell
   std::vector<std::string> tables;  // stems among TableNames(); empty: all
 };
 
@@ -83,6 +86,36 @@ double ClippedSphere(double y, double l);
 // numbers. Throws InputError for an unknown table name or where the folder cannot be written.
 void FitTables(const std::filesystem::path& folder, const FitOptions& options,
                const std::function<void(double)>& progress = {});
+
+// How far a shader's integral with these tables (bilinear look-up, exact clip) is from the lobe's, over
+// random rectangles.
+struct MeasureOptions {
+  int rectangles = 2000;
+  int nodes = 64;                      // per axis and side of the reference's quadrature
+  unsigned long long seed = 20261122;  // of the rectangles; another than the fit's
+};
+
+struct FitQuality {
+  MeasureOptions options;
+  std::vector<double> roughness;  // of `relative_rmse`'s rows
+  std::vector<double> degrees;    // view angle of its columns
+  // sqrt(Σ(a−b)²/Σb²) and Σ(a−b)/Σb over the rectangles, row-major [roughness][angle].
+  std::vector<double> relative_rmse, bias;
+  std::vector<double> by_roughness;  // root mean square over the angles
+  double all = 0.0;                  // root mean square over roughness and angle
+  // Relative RMSE at low roughness and grazing views (roughness 0.05–0.2, 60°–88°): root mean square and
+  // largest of the points.
+  double grazing = 0.0, grazing_max = 0.0;
+  // The LTC's share below the true horizon, over all nodes of the table.
+  double leak_mean = 0.0, leak_max = 0.0;
+};
+
+// References by quadrature that knows nothing of the tables. Same numbers on any number of threads.
+FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options = {},
+                      const std::function<void(double)>& progress = {});
+
+// The same as a Markdown table, in per cent, with the seed.
+std::string QualityTable(const FitQuality& quality);
 
 // Reads NAME.exr and NAME_terms.exr. Throws InputError.
 LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind);

@@ -32,10 +32,11 @@ struct LossQuads {
 LossQuads MakeLossQuads(int count);
 
 struct PolygonFit {
-  int nodes = 24;             // per axis of the quadrature
+  int nodes = 24;             // per axis of the quadrature, more at grazing views
+  double lobe_share = 0.1;    // of the loss: the quads scaled to the lobe
   double leak_penalty = 0.3;  // × b²
   bool with_cosine = false;
-  double cosine_penalty = 0.05;  // × w²
+  double cosine_penalty = 5e-3;  // × w²
 };
 
 // Findings § 1, points 1 and 2: least squares on the density, then on the integrals over `quads`. `previous`

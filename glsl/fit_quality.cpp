@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <mutex>
+
+#include "glsl/fit.h"
+#include "glsl/fit_cell.h"
+
+namespace arealab {
+namespace {
+
+// None of them a node of a 64 × 64 table, so that interpolation counts.
+constexpr double kRoughness[] = {0.1, 0.25, 0.5, 0.75, 1.0};
+constexpr double kDegrees[] = {10.0, 30.0, 50.0, 70.0, 85.0};
+constexpr double kLowRoughness[] = {0.05, 0.08, 0.11, 0.15, 0.2};
+constexpr double kGrazingDegrees[] = {60.0, 70.0, 78.0, 84.0, 88.0};
+
+struct Point {
+  double roughness, degrees;
+  double relative_rmse = 0.0, bias = 0.0;
+};
+
+void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int nodes, Point* point) {
+  const fit::View view = fit::MakeView(point->roughness, std::cos(glm::radians(point->degrees)));
+  const fit::Cell anywhere;  // only a start
+  const fit::Cell control = fit::FitDensityCell(view, 24, &anywhere);
+  const std::vector<double> wanted = fit::LobeIntegrals(view, quads, nodes, control);
+  const LtcLookup look = Look(tables, point->roughness, view.cosine);
+  const fit::Terms m(look.m.x, look.m.y, look.m.z, look.m.w);
+  const fit::Terms cosine_lobe(1.0, 0.0, 0.0, 1.0);
+  double squares = 0.0, difference = 0.0, total_squares = 0.0, total = 0.0;
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    double value = fit::QuadIntegral(m, quads[i]);
+    if (look.terms.z != 0.0) value += look.terms.z * fit::UpperQuadIntegral(cosine_lobe, quads[i]);
+    value *= look.terms.x;
+    squares += (value - wanted[i]) * (value - wanted[i]);
+    difference += value - wanted[i];
+    total_squares += wanted[i] * wanted[i];
+    total += wanted[i];
+  }
+  point->relative_rmse = std::sqrt(squares / total_squares);
+  point->bias = difference / total;
+}
+
+}  // namespace
+
+FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options,
+                      const std::function<void(double)>& progress) {
+  const std::vector<fit::Quad> quads = fit::RandomRectangles(options.rectangles, options.seed);
+  std::vector<Point> points;
+  for (const double roughness : kRoughness)
+    for (const double degrees : kDegrees) points.push_back({roughness, degrees});
+  const std::size_t grid = points.size();
+  for (const double roughness : kLowRoughness)
+    for (const double degrees : kGrazingDegrees) points.push_back({roughness, degrees});
+  std::mutex mutex;
+  int done = 0;
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    Measure(tables, quads, options.nodes, &points[i]);
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(points.size()));
+  });
+
+  FitQuality quality;
+  quality.options = options;
+  quality.roughness.assign(std::begin(kRoughness), std::end(kRoughness));
+  quality.degrees.assign(std::begin(kDegrees), std::end(kDegrees));
+  const auto columns = static_cast<double>(quality.degrees.size());
+  double all = 0.0;
+  for (std::size_t row = 0; row < quality.roughness.size(); ++row) {
+    double sum = 0.0;
+    for (std::size_t column = 0; column < quality.degrees.size(); ++column) {
+      const Point& point = points[row * quality.degrees.size() + column];
+      quality.relative_rmse.push_back(point.relative_rmse);
+      quality.bias.push_back(point.bias);
+      sum += point.relative_rmse * point.relative_rmse;
+    }
+    quality.by_roughness.push_back(std::sqrt(sum / columns));
+    all += sum;
+  }
+  quality.all = std::sqrt(all / static_cast<double>(grid));
+  double grazing = 0.0;
+  for (std::size_t i = grid; i < points.size(); ++i) {
+    grazing += points[i].relative_rmse * points[i].relative_rmse;
+    quality.grazing_max = std::max(quality.grazing_max, points[i].relative_rmse);
+  }
+  quality.grazing = std::sqrt(grazing / static_cast<double>(points.size() - grid));
+
+  for (int row = 0; row < tables.size; ++row) {
+    for (int column = 0; column < tables.size; ++column) {
+      const glm::dvec4 m = NodeMatrix(tables, row, column);
+      const double leak = 0.5 * (1.0 - m.x / std::hypot(m.x, m.y));
+      quality.leak_mean += leak;
+      quality.leak_max = std::max(quality.leak_max, leak);
+    }
+  }
+  quality.leak_mean /= tables.size * tables.size;
+  return quality;
+}
+
+std::string QualityTable(const FitQuality& quality) {
+  std::string text = fmt::format("relative RMSE in % over {} rectangles (seed {})\n\n| roughness |",
+                                 quality.options.rectangles, quality.options.seed);
+  for (const double degrees : quality.degrees) text += fmt::format(" {:.0f}° |", degrees);
+  text += " all angles |\n|---|";
+  for (std::size_t i = 0; i <= quality.degrees.size(); ++i) text += "---|";
+  text += "\n";
+  for (std::size_t row = 0; row < quality.roughness.size(); ++row) {
+    text += fmt::format("| {} |", quality.roughness[row]);
+    for (std::size_t column = 0; column < quality.degrees.size(); ++column)
+      text += fmt::format(" {:.2f} |", 100.0 * quality.relative_rmse[row * quality.degrees.size() + column]);
+    text += fmt::format(" {:.2f} |\n", 100.0 * quality.by_roughness[row]);
+  }
+  text += fmt::format(
+      "\nall {:.2f}; roughness 0.05–0.2 at 60°–88°: {:.2f}, at most {:.2f}; share below the horizon: {:.2f} "
+      "mean, "
+      "{:.2f} at most\n",
+      100.0 * quality.all, 100.0 * quality.grazing, 100.0 * quality.grazing_max, 100.0 * quality.leak_mean,
+      100.0 * quality.leak_max);
+  return text;
+}
+
+}  // namespace arealab
