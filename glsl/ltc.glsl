@@ -49,6 +49,3 @@ vec4 FromMirrorFrame(vec4 stored, float n_dot_v) {
 
 // M⁻¹ v.
 vec3 LtcTransform(vec4 m, vec3 v) { return vec3(m.x * v.x + m.z * v.z, v.y, m.y * v.x + m.w * v.z); }
-
-// terms: x = ∫ of the lobe with Fresnel 1, y = the same weighted by Schlick's (1 − h·v)⁵; F = F0 + (1 − F0)·weight.
-vec3 LtcReflectance(vec3 f0, vec4 terms) { return f0 * (terms.x - terms.y) + vec3(terms.y); }

@@ -4,8 +4,9 @@
 //   −(p × a − a × b), −(p × b − a × b), p × a + a × b, p × b + a × b;
 // that runs clockwise seen from the origin, so F = −1/(2π) Σ θ cross/|cross|.
 struct VectorFormFactor {
+  vec3 f;        // of the parallelogram in its own frame; of the light along its axes
   float size;    // |F|, the form factor in F's own direction
-  float height;  // F_z
+  float height;  // F along the normal
 };
 
 // Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
@@ -33,8 +34,9 @@ VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
   float t3 = EdgeRatio(dot(v3, v0), l3 * l0, 2.0, dot(line3, line3));
   vec3 f = (t0 - t2) * p_a + (t1 - t3) * p_b - (t0 + t1 + t2 + t3) * a_b;
   VectorFormFactor result;
-  result.size = length(f) * (0.5 / kPi);
-  result.height = f.z * (0.5 / kPi);
+  result.f = f * (0.5 / kPi);
+  result.size = length(result.f);
+  result.height = result.f.z;
   return result;
 }
 
@@ -68,8 +70,9 @@ VectorFormFactor LambertVector(RectangleView view) {
   vec3 p = view.in_plane;
   vec3 f = vec3(-beta * p.z, alpha * p.z, beta * p.x - alpha * p.y - gamma);
   VectorFormFactor result;
-  result.size = length(f) * (0.5 / kPi);
-  result.height = dot(view.horizon, f) * (0.5 / kPi);
+  result.f = f * (0.5 / kPi);
+  result.size = length(result.f);
+  result.height = dot(view.horizon, result.f);
   return result;
 }
 

@@ -24,14 +24,8 @@ HorizonShares CutAtHorizon(float top, float rise_a, float rise_b) {
   return shares;
 }
 
-// The sum of the edges: z0 … z3 their cross products' third components, over the shares that EdgeRatio has taken in;
-// closing = θ of the side in the horizon.
-float SumEdges(float z0, float z1, float z2, float z3, float closing, float orientation) {
-  return AsFormFactor((orientation * (z0 + z1 - z2 - z3) + closing) * (0.5 / kPi));
-}
-
-// For a clamped cosine about +z, of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
-float ClippedFormFactor(vec3 center, vec3 half_a, vec3 half_b) {
+// The vector form factor of what is above the horizon; its z is the form factor for a clamped cosine about +z. Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
+vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) {
   float sign_a = half_a.z < 0.0 ? -2.0 : 2.0;
   float sign_b = half_b.z < 0.0 ? -2.0 : 2.0;
   vec3 a = half_a * sign_a;
@@ -59,12 +53,14 @@ float ClippedFormFactor(vec3 center, vec3 half_a, vec3 half_b) {
   float t2 = EdgeRatio(dot(c, v3), lc * l3, k.k2, dot(line2, line2));
   float t3 = EdgeRatio(dot(v3, v4), l3 * l4, k.k3, dot(line3, line3));
   float closing = EdgeAngle(dot(v4, v0), l4 * l0, abs(CrossZ(v4, v0)));
-  // Sides rising the same way keep half_a × half_b towards the origin: then the polygon runs clockwise.
-  float orientation = sign_a * sign_b * -0.25;
-  return SumEdges(t0 * line0.z, t1 * line1.z, t2 * line2.z, t3 * line3.z, closing, orientation);
+  // Sides rising the same way keep half_a × half_b towards the origin: then the polygon runs clockwise. A side in the
+  // horizon adds its angle upwards.
+  float scale = sign_a * sign_b * (-0.125 / kPi);
+  vec3 sum = scale * (t0 * line0 + t1 * line1 - t2 * line2 - t3 * line3);
+  return vec3(sum.x, sum.y, AsFormFactor(sum.z + closing * (0.5 / kPi)));
 }
 
-// The same for the light itself: in its own axes its sides are parallel to the axes, which leaves few products.
+// The form factor of the light itself, above the horizon: in its own axes its sides are parallel to the axes, which leaves few products.
 float ClippedLambert(RectangleView view) {
   float sign_a = view.half_a.z < 0.0 ? -2.0 : 2.0;
   float sign_b = view.half_b.z < 0.0 ? -2.0 : 2.0;
@@ -104,6 +100,6 @@ float ClippedLambert(RectangleView view) {
   // v4 × v0 from the shares.
   float area = abs((k.k2 - k.k0) * c_a + (k.k3 - k.k1) * c_b + (k.k1 * k.k2 - k.k0 * k.k3) * a_b);
   float closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);
-  return SumEdges(t0 * (c_a + k.k1 * a_b), t1 * c_b, t2 * c_a, t3 * (c_b - k.k2 * a_b), closing,
-                  sign_a * sign_b * -0.25);
+  float sum = t0 * (c_a + k.k1 * a_b) + t1 * c_b - t2 * c_a - t3 * (c_b - k.k2 * a_b);
+  return AsFormFactor(sign_a * sign_b * (-0.125 / kPi) * sum + closing * (0.5 / kPi));
 }

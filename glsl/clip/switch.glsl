@@ -4,15 +4,15 @@
 // Where the side from a corner above to one below meets the horizon; only its direction counts.
 vec3 MeetHorizon(vec3 above, vec3 below) { return above.z * below - below.z * above; }
 
-float EdgeZ(vec4 v0, vec4 v1) {
+vec3 EdgeVector(vec4 v0, vec4 v1) {
   vec3 a = vec3(v0);
   vec3 b = vec3(v1);
   vec3 c = cross(a, b);
-  return EdgeRatio(dot(a, b), v0.w * v1.w, 1.0, dot(c, c)) * c.z;
+  return EdgeRatio(dot(a, b), v0.w * v1.w, 1.0, dot(c, c)) * c;
 }
 
-// For a clamped cosine about +z, of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
-float ClippedFormFactor(vec3 center, vec3 half_a, vec3 half_b) {
+// The vector form factor of what is above the horizon; its z is the form factor for a clamped cosine about +z. Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
+vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) {
   // Counter-clockwise seen from the origin.
   vec3 p0 = center + half_a + half_b;
   vec3 p1 = center + half_a - half_b;
@@ -86,7 +86,7 @@ float ClippedFormFactor(vec3 center, vec3 half_a, vec3 half_b) {
   } else if (above == 15) {
     count = 4;
   }
-  if (count == 0) return 0.0;
+  if (count == 0) return vec3(0.0);
   if (count == 3) v3 = v0;
   if (count == 4) v4 = v0;
 
@@ -95,10 +95,10 @@ float ClippedFormFactor(vec3 center, vec3 half_a, vec3 half_b) {
   vec4 e2 = EdgeVertex(v2);
   vec4 e3 = EdgeVertex(v3);
   vec4 e4 = EdgeVertex(v4);
-  float sum = EdgeZ(e0, e1) + EdgeZ(e1, e2) + EdgeZ(e2, e3);
-  if (count >= 4) sum += EdgeZ(e3, e4);
-  if (count == 5) sum += EdgeZ(e4, e0);
-  return AsFormFactor(sum * (0.5 / kPi));
+  vec3 sum = EdgeVector(e0, e1) + EdgeVector(e1, e2) + EdgeVector(e2, e3);
+  if (count >= 4) sum += EdgeVector(e3, e4);
+  if (count == 5) sum += EdgeVector(e4, e0);
+  return vec3(sum.x * (0.5 / kPi), sum.y * (0.5 / kPi), AsFormFactor(sum.z * (0.5 / kPi)));
 }
 
-float ClippedLambert(RectangleView view) { return ClippedFormFactor(view.center, view.half_a, view.half_b); }
+float ClippedLambert(RectangleView view) { return ClippedVector(view.center, view.half_a, view.half_b).z; }

@@ -1,7 +1,7 @@
 /*---
 summary = "Linearly transformed cosines, horizon by the vector form factor's proxy sphere"
 citation = "Hill & Heitz 2016; Snyder 1996; Heitz et al. 2016"
-author_note = "Published: clipped sphere from a table, rational edge, tables fitted with an L3 norm. Ours: clipped sphere by a fit, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame."
+author_note = "Published: clipped sphere from a table, rational edge, tables fitted with an L3 norm, Fresnel averaged over the lobe. Ours: clipped sphere by a fit, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
@@ -24,7 +24,6 @@ choices = [
   ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
   ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
   ["rational", "rational fit on unit vectors, mirrored where obtuse"],
-  ["acos", "the language's arc cosine"],
 ]
 
 [[option]]
@@ -36,6 +35,14 @@ choices = [
   ["l3", "fitted on the lobe with an L3 norm, stored in the normal's frame"],
 ]
 
+[[option]]
+name = "fresnel"
+summary = "Where Schlick's Fresnel term is taken"
+choices = [
+  ["direction", "towards the light's part of the lobe, tending to the lobe's average as the light covers it"],
+  ["lobe", "averaged over the whole lobe, wherever the light is"],
+]
+
 [tables]
 ltc_matrix = "ltc_ggx_{fit}.exr"
 ltc_terms = "ltc_ggx_{fit}_terms.exr"
@@ -45,9 +52,12 @@ sphere = "sphere.exr"
 sphere = "table"
 edge = "rational"
 fit = "l3"
+fresnel = "lobe"
 ---*/
+#include "brdf.glsl"
 #include "ltc.glsl"
 #include "fit"
+#include "fresnel"
 #include "edge"
 #include "sphere"
 #include "vector_form_factor.glsl"
@@ -63,9 +73,11 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   vec3 half_a = LtcTransform(m, view.half_a);
   vec3 half_b = LtcTransform(m, view.half_b);
   float form_factor = ClippedProxy(LambertVector(view));
-  float lobe = LtcLobe(ClippedProxy(ParallelogramVector(center, half_a, half_b)), form_factor, terms);
+  VectorFormFactor transformed = ParallelogramVector(center, half_a, half_b);
+  float above = ClippedProxy(transformed);
+  float lobe = LtcLobe(above, form_factor, terms);
   Radiance result;
   result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
-  result.specular = LtcReflectance(surface.f0, terms) * light.radiance * lobe;
+  result.specular = LtcReflectance(surface.f0, terms, m, frame.n_dot_v, vec3(transformed.f.x, transformed.f.y, above)) * light.radiance * lobe;
   return result;
 }

@@ -1,7 +1,7 @@
 /*---
 summary = "Linearly transformed cosines, clipped exactly at the horizon"
 citation = "Heitz et al. 2016; Hill & Heitz 2016; Lambert 1760"
-author_note = "Published: 16-case clip, rational edge, tables fitted with an L3 norm. Ours: branchless clip in the light's plane, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame."
+author_note = "Published: 16-case clip, rational edge, tables fitted with an L3 norm, Fresnel averaged over the lobe. Ours: branchless clip in the light's plane, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
@@ -24,7 +24,6 @@ choices = [
   ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
   ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
   ["rational", "rational fit on unit vectors, mirrored where obtuse"],
-  ["acos", "the language's arc cosine"],
 ]
 
 [[option]]
@@ -36,6 +35,14 @@ choices = [
   ["l3", "fitted on the lobe with an L3 norm, stored in the normal's frame"],
 ]
 
+[[option]]
+name = "fresnel"
+summary = "Where Schlick's Fresnel term is taken"
+choices = [
+  ["direction", "towards the light's part of the lobe, tending to the lobe's average as the light covers it"],
+  ["lobe", "averaged over the whole lobe, wherever the light is"],
+]
+
 [tables]
 ltc_matrix = "ltc_ggx_{fit}.exr"
 ltc_terms = "ltc_ggx_{fit}_terms.exr"
@@ -44,9 +51,12 @@ ltc_terms = "ltc_ggx_{fit}_terms.exr"
 clip = "switch"
 edge = "rational"
 fit = "l3"
+fresnel = "lobe"
 ---*/
+#include "brdf.glsl"
 #include "ltc.glsl"
 #include "fit"
+#include "fresnel"
 #include "edge"
 #include "clip"
 
@@ -61,9 +71,10 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   vec3 half_a = LtcTransform(m, view.half_a);
   vec3 half_b = LtcTransform(m, view.half_b);
   float form_factor = ClippedLambert(view);
-  float lobe = LtcLobe(ClippedFormFactor(center, half_a, half_b), form_factor, terms);
+  vec3 transformed = ClippedVector(center, half_a, half_b);
+  float lobe = LtcLobe(transformed.z, form_factor, terms);
   Radiance result;
   result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
-  result.specular = LtcReflectance(surface.f0, terms) * light.radiance * lobe;
+  result.specular = LtcReflectance(surface.f0, terms, m, frame.n_dot_v, transformed) * light.radiance * lobe;
   return result;
 }

@@ -295,7 +295,7 @@ TEST_F(LtcTechnique, ProxyDiffersFromTheClipAtTheHorizon) {
 }
 
 // Shaded points on the light's plane, edges and corners, the viewer along the normal and at grazing angles,
-// tiny and huge lights: every choice of options leaves finite radiance that is at least 0.
+// tiny and huge lights: every choice of clip, sphere and edge leaves finite radiance that is at least 0.
 TEST_F(LtcTechnique, DegenerateInputsStayFiniteForEveryOption) {
   std::vector<PointCase> cases;
   for (const double scale : {1e-6, 1.0, 1e5}) {
@@ -320,11 +320,15 @@ TEST_F(LtcTechnique, DegenerateInputsStayFiniteForEveryOption) {
   int variants = 0;
   for (const Variant& variant : AllVariants(techniques_)) {
     const std::string& technique = variant.technique->name;
-    if ((technique != "ltc" && technique != "hill") || variant.options.at("fit") == "cosine") continue;
+    if (technique != "ltc" && technique != "hill") continue;
+    // Tables and Fresnel change little here, and would compile six times as long.
+    if ((variant.options.at("fit") != "polygon" || variant.options.at("fresnel") != "direction") &&
+        !(variant == PublishedVariant(*variant.technique)))
+      continue;
     EXPECT_TRUE(IsSound(Shade(variant.Name(), cases))) << variant.Name();
     ++variants;
   }
-  EXPECT_EQ(variants, 2 * 3 * 4 * 2);  // techniques, clips or spheres, edges, fits
+  EXPECT_EQ(variants, 2 * (3 * 3 + 1));  // techniques, clips or spheres × edges, the published form
 }
 
 }  // namespace

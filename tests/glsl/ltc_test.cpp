@@ -8,6 +8,7 @@
 
 #include "glsl/dual_begin.h"
 
+#include "glsl/brdf.glsl"
 #include "glsl/ltc.glsl"
 
 namespace polygon {
@@ -19,7 +20,13 @@ namespace cosine {
 namespace l3 {
 #include "glsl/fit/l3.glsl"
 }
-#include "glsl/edge/acos.glsl"
+namespace whole {
+#include "glsl/fresnel/lobe.glsl"
+}
+namespace towards {
+#include "glsl/fresnel/direction.glsl"
+}
+#include "glsl/edge/mirrored.glsl"
 namespace clipped {
 #include "glsl/clip/arc.glsl"
 }
@@ -85,18 +92,36 @@ TEST(Ltc, IdentityIsTheClampedCosine) {
     const dual::ShadingFrame frame = dual::MakeShadingFrame(RandomDirection(engine), RandomDirection(engine));
     const auto view = dual::ViewRectangle(light, dvec3(0.0), frame.tangent, frame.bitangent, frame.normal);
     const dvec4 identity(1.0, 0.0, 0.0, 1.0);
-    const double lobe = dual::clipped::ClippedFormFactor(dual::LtcTransform(identity, view.center),
-                                                         dual::LtcTransform(identity, view.half_a),
-                                                         dual::LtcTransform(identity, view.half_b));
-    EXPECT_NEAR(lobe, dual::clipped::ClippedLambert(view), 2e-8);  // acos near 1; measured 3.4e-9
+    const double lobe = dual::clipped::ClippedVector(dual::LtcTransform(identity, view.center),
+                                                     dual::LtcTransform(identity, view.half_a),
+                                                     dual::LtcTransform(identity, view.half_b))
+                            .z;
+    EXPECT_NEAR(lobe, dual::clipped::ClippedLambert(view), 1e-12);
   }
 }
 
-TEST(Ltc, ReflectanceBetweenF0AndOne) {
-  const dvec4 terms(0.9, 0.1, 0.0, 0.0);
-  EXPECT_NEAR(dual::LtcReflectance(dvec3(1.0), terms).x, 0.9, 1e-15);
-  EXPECT_NEAR(dual::LtcReflectance(dvec3(0.0), terms).x, 0.1, 1e-15);
-  EXPECT_NEAR(dual::LtcReflectance(dvec3(0.04), terms).x, 0.04 * 0.8 + 0.1, 1e-15);
+TEST(Ltc, FresnelOfTheWholeLobeLiesBetweenF0AndOne) {
+  const dvec4 terms(0.9, 0.1, 0.0, 0.0), m(1.0, 0.0, 0.0, 1.0);
+  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(1.0), terms, m, 0.5, dvec3(0.0)).x, 0.9, 1e-15);
+  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(0.0), terms, m, 0.5, dvec3(0.0)).x, 0.1, 1e-15);
+  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(0.04), terms, m, 0.5, dvec3(0.0)).x, 0.04 * 0.8 + 0.1, 1e-15);
+}
+
+// A light that covers the lobe gets its average; a small one Schlick's value where it stands, brought back by
+// M.
+TEST(Ltc, FresnelTowardsTheLight) {
+  const dvec4 terms(0.9, 0.1, 0.0, 0.0), m(1.3, -0.2, 0.4, 0.6);
+  const double n_dot_v = 0.4;
+  EXPECT_NEAR(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, dvec3(0.0, 0.0, 1.0)).x,
+              0.04 * 0.8 + 0.1, 1e-12);
+  const dvec3 to_view(std::sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
+  for (const dvec3 to_light : {dvec3(-0.9, 0.1, 0.3), dvec3(0.2, 0.7, 0.6), dvec3(0.0, 0.0, 1.0)}) {
+    const dvec3 transformed = 1e-9 * glm::normalize(dual::LtcTransform(m, to_light));
+    const double v_dot_h = glm::dot(to_view, glm::normalize(to_view + glm::normalize(to_light)));
+    const double expected = 0.9 * (0.04 + 0.96 * std::pow(1.0 - v_dot_h, 5.0));
+    EXPECT_NEAR(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, transformed).x, expected, 1e-8);
+  }
+  EXPECT_TRUE(std::isfinite(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, dvec3(0.0)).x));
 }
 
 // As a sampler does it: bilinear, clamped to the edge, texel (i, j)'s centre at (i + ½, j + ½) / size.

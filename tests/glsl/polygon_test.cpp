@@ -51,7 +51,16 @@ namespace switched {
 }
 }  // namespace rational
 namespace exact {
-#include "glsl/edge/acos.glsl"
+// The edges without any approximation: what is left is the clip's own error.
+vec4 EdgeVertex(vec3 v) {
+  return vec4(v, length(v));
+}
+double EdgeAngle(double d, double, double area) {
+  return std::atan2(area, d);
+}
+double EdgeRatio(double d, double, double share, double line2) {
+  return line2 > 0.0 ? std::atan2(share * std::sqrt(line2), d) / std::sqrt(line2) : 0.0;
+}
 namespace arc {
 #include "glsl/clip/arc.glsl"
 }
@@ -189,6 +198,7 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
   Worst mirrored_lambert, mirrored, mirrored_switched;
   Worst arc_lambert, arc, exact_arc_lambert, exact_arc, switched, exact_switched, rational_arc,
       rational_switched;
+  double vector_error = 0.0;
   std::array<int, 16> patterns{};
   for (int i = 0; i < 100000; ++i) {
     const RandomRectangle rectangle = MakeRectangle(random);
@@ -198,15 +208,17 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
     const Case c = Transformed(random, rectangle.seen);
     const double expected = c.Expected();
     mirrored_lambert.Add(dual::mirrored::arc::ClippedLambert(rectangle.view), lambert);
-    mirrored.Add(dual::mirrored::arc::ClippedFormFactor(c.center, c.a, c.b), expected);
-    mirrored_switched.Add(dual::mirrored::switched::ClippedFormFactor(c.center, c.a, c.b), expected);
+    mirrored.Add(dual::mirrored::arc::ClippedVector(c.center, c.a, c.b).z, expected);
+    mirrored_switched.Add(dual::mirrored::switched::ClippedVector(c.center, c.a, c.b).z, expected);
     ++patterns[static_cast<std::size_t>(c.CornersAbove())];
-    arc.Add(dual::half_angle::arc::ClippedFormFactor(c.center, c.a, c.b), expected);
-    exact_arc.Add(dual::exact::arc::ClippedFormFactor(c.center, c.a, c.b), expected);
-    switched.Add(dual::half_angle::switched::ClippedFormFactor(c.center, c.a, c.b), expected);
-    exact_switched.Add(dual::exact::switched::ClippedFormFactor(c.center, c.a, c.b), expected);
-    rational_arc.Add(dual::rational::arc::ClippedFormFactor(c.center, c.a, c.b), expected);
-    rational_switched.Add(dual::rational::switched::ClippedFormFactor(c.center, c.a, c.b), expected);
+    arc.Add(dual::half_angle::arc::ClippedVector(c.center, c.a, c.b).z, expected);
+    vector_error = std::max(vector_error, glm::length(dual::exact::arc::ClippedVector(c.center, c.a, c.b) -
+                                                      VectorOf(ClipAbove(c.Corners()))));
+    exact_arc.Add(dual::exact::arc::ClippedVector(c.center, c.a, c.b).z, expected);
+    switched.Add(dual::half_angle::switched::ClippedVector(c.center, c.a, c.b).z, expected);
+    exact_switched.Add(dual::exact::switched::ClippedVector(c.center, c.a, c.b).z, expected);
+    rational_arc.Add(dual::rational::arc::ClippedVector(c.center, c.a, c.b).z, expected);
+    rational_switched.Add(dual::rational::switched::ClippedVector(c.center, c.a, c.b).z, expected);
   }
   for (int pattern = 0; pattern < 16; ++pattern) {
     const bool possible = pattern != 5 && pattern != 10;
@@ -216,11 +228,11 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
   EXPECT_LT(mirrored_lambert.error, 1.5e-7);
   EXPECT_LT(mirrored.error, 1.5e-7);
   EXPECT_LT(mirrored_switched.error, 1.5e-7);
-  // The arc cosine near 1 is 1.5e-8 for a closing side of no length; measured 6.3e-9, 6.7e-9 and, without
-  // one, 7.8e-12.
-  EXPECT_LT(exact_arc_lambert.error, 3e-8);
-  EXPECT_LT(exact_arc.error, 3e-8);
-  EXPECT_LT(exact_switched.error, 1e-10);
+  // The clip itself, with exact edges: measured 2.4e-14, 1.7e-13, 2.4e-14; the vector 4.2e-11.
+  EXPECT_LT(exact_arc_lambert.error, 1e-11);
+  EXPECT_LT(exact_arc.error, 1e-11);
+  EXPECT_LT(exact_switched.error, 1e-11);
+  EXPECT_LT(vector_error, 1e-9);
   // The polynomial's 2.7e-6, and its cancellation near π in the side in the horizon;
   // measured 2.6e-6, 2.6e-6, 1.7e-5.
   EXPECT_LT(arc_lambert.error, 6e-6);
@@ -254,14 +266,14 @@ TEST(Polygon, VectorFormFactorOfRandomRectangles) {
     // Wholly above the horizon the proxy is not asked: both techniques give F_z.
     if (c.CornersAbove() == 15 &&
         expected.z * expected.z > glm::length(expected) * glm::dot(expected, expected)) {
-      EXPECT_NEAR(dual::exact::proxy::ClippedProxy(f),
-                  dual::exact::arc::ClippedFormFactor(c.center, c.a, c.b), 1e-6);
+      EXPECT_NEAR(dual::exact::proxy::ClippedProxy(f), dual::exact::arc::ClippedVector(c.center, c.a, c.b).z,
+                  1e-6);
     }
   }
-  EXPECT_LT(size.error, 1e-8);  // measured 3.4e-10, 1.6e-10, 9.9e-11, 4.6e-11
-  EXPECT_LT(height.error, 1e-8);
-  EXPECT_LT(lambert_size.error, 1e-8);
-  EXPECT_LT(lambert_height.error, 1e-8);
+  EXPECT_LT(size.error, 1e-11);  // measured 8.0e-14, 3.9e-14, 5.0e-14, 2.4e-14
+  EXPECT_LT(height.error, 1e-11);
+  EXPECT_LT(lambert_size.error, 1e-11);
+  EXPECT_LT(lambert_height.error, 1e-11);
   EXPECT_LT(half_angle_size.error, 6e-6);  // the polynomial's 2.7e-6; measured 2.8e-6
 }
 
@@ -309,16 +321,15 @@ TEST(Polygon, FormFactorOfParallelAndPerpendicularRectangle) {
       const double parallel =
           (width / u * std::atan(length / u) + length / v * std::atan(width / v)) / (2.0 * kPi);
       const Case above{{0.5 * width, 0.5 * length, 1.0}, {0.5 * width, 0.0, 0.0}, {0.0, -0.5 * length, 0.0}};
-      // acos(1 − 1e-16) is 1.5e-8: what the closing side of no length may add.
-      EXPECT_NEAR(dual::exact::arc::ClippedFormFactor(above.center, above.a, above.b), parallel, 1e-8);
-      EXPECT_NEAR(dual::half_angle::arc::ClippedFormFactor(above.center, above.a, above.b) / parallel, 1.0,
+      EXPECT_NEAR(dual::exact::arc::ClippedVector(above.center, above.a, above.b).z / parallel, 1.0, 1e-9);
+      EXPECT_NEAR(dual::half_angle::arc::ClippedVector(above.center, above.a, above.b).z / parallel, 1.0,
                   1e-5);
       // The wall x = 1, y from 0 to width, z from 0 to length.
       const double far = std::sqrt(1.0 + length * length);
       const double perpendicular = (std::atan(width) - std::atan(width / far) / far) / (2.0 * kPi);
       const Case wall{{1.0, 0.5 * width, 0.5 * length}, {0.0, 0.5 * width, 0.0}, {0.0, 0.0, -0.5 * length}};
-      EXPECT_NEAR(dual::exact::arc::ClippedFormFactor(wall.center, wall.a, wall.b), perpendicular, 1e-8);
-      EXPECT_NEAR(dual::half_angle::switched::ClippedFormFactor(wall.center, wall.a, wall.b), perpendicular,
+      EXPECT_NEAR(dual::exact::arc::ClippedVector(wall.center, wall.a, wall.b).z, perpendicular, 1e-13);
+      EXPECT_NEAR(dual::half_angle::switched::ClippedVector(wall.center, wall.a, wall.b).z, perpendicular,
                   3e-6 * perpendicular + 1e-12);
     }
   }
@@ -326,8 +337,8 @@ TEST(Polygon, FormFactorOfParallelAndPerpendicularRectangle) {
 
 TEST(Polygon, FormFactorOfHalfSpaceIsOneAndOfAnEndlessWallIsHalf) {
   const dvec3 a(1e6, 0.0, 0.0), b(0.0, -1e6, 0.0);
-  EXPECT_NEAR(dual::half_angle::arc::ClippedFormFactor({0.0, 0.0, 1.0}, a, b), 1.0, 5e-6);
-  EXPECT_NEAR(dual::half_angle::arc::ClippedFormFactor({1.0, 0.0, 0.0}, b, dvec3(0.0, 0.0, 1e6)), 0.5, 5e-6);
+  EXPECT_NEAR(dual::half_angle::arc::ClippedVector({0.0, 0.0, 1.0}, a, b).z, 1.0, 5e-6);
+  EXPECT_NEAR(dual::half_angle::arc::ClippedVector({1.0, 0.0, 0.0}, b, dvec3(0.0, 0.0, 1e6)).z, 0.5, 5e-6);
   EXPECT_NEAR(dual::half_angle::proxy::ClippedProxy(
                   dual::half_angle::proxy::ParallelogramVector({0.0, 0.0, 1.0}, a, b)),
               1.0, 5e-6);
@@ -357,11 +368,11 @@ TEST(Polygon, DegenerateInputsStayFormFactors) {
                 dual::ViewRectangle(light, dvec3(0.0), {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
             for (const double value :
                  {dual::mirrored::arc::ClippedLambert(view), dual::mirrored::switched::ClippedLambert(view),
-                  dual::mirrored::arc::ClippedFormFactor(view.center, view.half_a, view.half_b),
+                  dual::mirrored::arc::ClippedVector(view.center, view.half_a, view.half_b).z,
                   dual::mirrored::proxy::ClippedProxy(dual::mirrored::proxy::LambertVector(view)),
                   dual::half_angle::arc::ClippedLambert(view), dual::rational::arc::ClippedLambert(view),
                   dual::exact::arc::ClippedLambert(view),
-                  dual::half_angle::arc::ClippedFormFactor(view.center, view.half_a, view.half_b),
+                  dual::half_angle::arc::ClippedVector(view.center, view.half_a, view.half_b).z,
                   dual::half_angle::switched::ClippedLambert(view),
                   dual::rational::switched::ClippedLambert(view), dual::exact::switched::ClippedLambert(view),
                   dual::half_angle::none::ClippedLambert(view),
