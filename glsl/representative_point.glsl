@@ -6,7 +6,8 @@
 
 // Where the surface turns away from the light's plane the ray along its normal never meets it, and cosθ_i grows towards
 // the plane's infinity. Drobot says that the ray is to be skewed towards the plane and gives no formula. Ours: the
-// direction n − max(kSkew + n_z, 0)·z, continuous, whose cosine to the plane is never below kSkew.
+// direction n − max(kSkew + n_z, 0)·z, continuous, whose cosine to the plane is never below kSkew. Over 4000 random lights
+// the diffuse error does not tell 0.01 from 0.3 (relative RMSE 0.51 to 0.52); 0.1 leaves all but the last 6° as they are.
 const float kSkew = 0.1;
 
 // p' − p in the light's plane: the (skewed) ray along the normal, where cosθ_i is greatest.

@@ -1,7 +1,7 @@
 /*---
 summary = "One representative point for the diffuse lobe, one at the middle of the light's part in the lobe's cone for the specular"
 citation = "Drobot 2014"
-author_note = "point=halfway, extent=area, cone=threshold are Drobot's for rectangle and disk, his sphere diffuse is the closed form; ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, the bounds 2π and the cone's own solid angle, extent=solid_angle, cone=energy"
+author_note = "point=halfway, extent=area, cone=threshold are Drobot's for rectangle and disk, his sphere diffuse is the closed form; that his shipped point is then brought onto the light is our reading (without it a small light's place would not matter); ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, the bounds 2π and the cone's own solid angle, extent=solid_angle, cone=energy"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
