@@ -87,6 +87,22 @@ ErrorMetrics CompareImages(std::span<const glm::vec3> a, std::span<const glm::ve
   return metrics;
 }
 
+double RelativeRmse(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
+  CheckSizes(a.size(), b.size(), 1);
+  double squares = 0.0, reference_squares = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const double reference = static_cast<double>(b[i][channel]);
+      const double difference = static_cast<double>(a[i][channel]) - reference;
+      squares += difference * difference;
+      reference_squares += reference * reference;
+    }
+  }
+  // A NaN or an infinity of either ends up in a sum.
+  if (!std::isfinite(squares) || !std::isfinite(reference_squares)) return kNotMeasured;
+  return Ratio(std::sqrt(squares), std::sqrt(reference_squares));
+}
+
 int CountNonfinitePixels(const RadianceImage& image) {
   int count = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {

@@ -23,6 +23,9 @@ inline double Luminance(const glm::vec3& color) {
 // Throws std::invalid_argument where the sizes differ or are no multiple of `width`.
 ErrorMetrics CompareImages(std::span<const glm::vec3> a, std::span<const glm::vec3> b, int width);
 
+// rel_rmse alone, the same value within rounding, several times as fast: for the pairs of many images.
+double RelativeRmse(std::span<const glm::vec3> a, std::span<const glm::vec3> b);
+
 // Pixels with a NaN or an infinity in either lobe.
 int CountNonfinitePixels(const RadianceImage& image);
 

@@ -445,7 +445,8 @@ function buildScene() {
 
   section.append(buildThumbs(s), buildTable(s));
   const pairs = buildPairs(s), plot = buildPlot(s);
-  section.append(pairs && plot ? h("div", { class: "two" }, pairs, plot) : pairs || plot || "");
+  const crowded = variantsOf(s).length > 13;
+  section.append(pairs && plot && !crowded ? h("div", { class: "two" }, pairs, plot) : h("div", {}, pairs, plot));
   const refused = s.variants.filter((v) => !v.supported);
   if (refused.length) {
     section.append(h("section", {}, h("div", { class: "head" }, h("h3", { text: "Not supported here" })),
@@ -564,6 +565,7 @@ function buildPairs(s) {
   ui.pairMatrix = () => {
     const wide = !matchMedia("(max-width: 720px)").matches;
     matrix.style.gridTemplateColumns = (wide ? "minmax(6rem, 11rem) " : "") + `repeat(${names.length}, minmax(0, 1fr))`;
+    matrix.classList.toggle("dense", names.length > (wide ? 34 : 13));  // colour only: figures would not fit
     for (const { cell, a, b } of ui.cells) cell.classList.toggle("chosen", a === state.a && b === state.b);
   };
   return h("section", {}, h("div", { class: "head" }, h("h3", { text: "Every pair" }),
