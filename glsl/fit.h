@@ -31,6 +31,7 @@
 //   table(F.z/|F|, |F|).
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
@@ -87,11 +88,21 @@ double ClippedSphere(double y, double l);
 void FitTables(const std::filesystem::path& folder, const FitOptions& options,
                const std::function<void(double)>& progress = {});
 
+// Form factor of a quadrilateral (corners in order, either way round) after M⁻¹ = m, clipped exactly at z = 0
+// of the lobe's space: the LTC of the docstring above. The identity (1, 0, 0, 1) gives the quadrilateral's
+// own clipped form factor.
+double LtcQuadIntegral(const glm::dvec4& m, const std::array<glm::dvec3, 4>& corners);
+
+// ∫ρ over a quadrilateral, ρ = GGX BRDF × n·l with Fresnel 1, in the local frame: the reference of
+// MeasureFit.
+double LobeQuadIntegral(double roughness, double n_dot_v, const std::array<glm::dvec3, 4>& corners,
+                        int nodes = 96);
+
 // How far a shader's integral with these tables (bilinear look-up, exact clip) is from the lobe's, over
 // random rectangles.
 struct MeasureOptions {
   int rectangles = 2000;
-  int nodes = 64;                      // per axis and side of the reference's quadrature
+  int nodes = 128;                     // per axis and side of the reference's quadrature
   unsigned long long seed = 20261122;  // of the rectangles; another than the fit's
 };
 

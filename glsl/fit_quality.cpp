@@ -23,11 +23,15 @@ struct Point {
   double relative_rmse = 0.0, bias = 0.0;
 };
 
+// A lobe near ρ, so that the masks have little left to find; the result does not depend on how near.
+fit::Cell Control(const fit::View& view) {
+  const fit::Cell anywhere;  // only a start
+  return fit::FitDensityCell(view, 24, &anywhere);
+}
+
 void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int nodes, Point* point) {
   const fit::View view = fit::MakeView(point->roughness, std::cos(glm::radians(point->degrees)));
-  const fit::Cell anywhere;  // only a start
-  const fit::Cell control = fit::FitDensityCell(view, 24, &anywhere);
-  const std::vector<double> wanted = fit::LobeIntegrals(view, quads, nodes, control);
+  const std::vector<double> wanted = fit::LobeIntegrals(view, quads, nodes, Control(view));
   const LtcLookup look = Look(tables, point->roughness, view.cosine);
   const fit::Terms m(look.m.x, look.m.y, look.m.z, look.m.w);
   const fit::Terms cosine_lobe(1.0, 0.0, 0.0, 1.0);
@@ -46,6 +50,16 @@ void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int n
 }
 
 }  // namespace
+
+double LtcQuadIntegral(const glm::dvec4& m, const std::array<glm::dvec3, 4>& corners) {
+  return fit::QuadIntegral(fit::Terms(m.x, m.y, m.z, m.w), fit::MakeQuad(corners));
+}
+
+double LobeQuadIntegral(double roughness, double n_dot_v, const std::array<glm::dvec3, 4>& corners,
+                        int nodes) {
+  const fit::View view = fit::MakeView(roughness, n_dot_v);
+  return fit::LobeIntegrals(view, {fit::MakeQuad(corners)}, nodes, Control(view)).front();
+}
 
 FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options,
                       const std::function<void(double)>& progress) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -248,6 +249,76 @@ TEST(Fit, LookUpAtANodeIsTheNode) {
     const glm::dvec4 node = NodeMatrix(tables, 40, 21);
     for (int term = 0; term < 4; ++term) EXPECT_NEAR(look.m[term], node[term], 1e-9);
     EXPECT_NEAR(look.terms.x, tables.terms[Texel(40, 21, 64)].x, 1e-9);
+  }
+}
+
+using Corners = std::array<glm::dvec3, 4>;
+
+Corners Rectangle(const glm::dvec3& center, const glm::dvec3& a, const glm::dvec3& b) {
+  return {center + a + b, center - a + b, center - a - b, center + a - b};
+}
+
+// ∫ f(direction) dω over a rectangle by mid-points on its area.
+template <typename Function>
+double OverRectangle(const Corners& corners, const Function& f) {
+  constexpr int kSteps = 1200;
+  const glm::dvec3 u = corners[1] - corners[0], v = corners[3] - corners[0];
+  const glm::dvec3 area = glm::cross(u, v) / double(kSteps * kSteps);
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const glm::dvec3 p = corners[0] + (i + 0.5) / kSteps * u + (j + 0.5) / kSteps * v;
+      const double length = glm::length(p);
+      sum += f(p / length) * std::abs(glm::dot(area, p)) / (length * length * length);
+    }
+  }
+  return sum;
+}
+
+TEST(Fit, IdentityIsTheClampedCosine) {
+  // A square of half side 1 at height 1: four corner form factors (1/2π)·2·(1/√2)·atan(1/√2) [Howell, C-11
+  // with a = b = c].
+  const double corner =
+      2.0 / std::sqrt(2.0) * std::atan(1.0 / std::sqrt(2.0)) * 0.5 * glm::one_over_pi<double>();
+  const Corners above = Rectangle({0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+  EXPECT_NEAR(LtcQuadIntegral({1.0, 0.0, 0.0, 1.0}, above), 4.0 * corner, 1e-14);
+  // A wall that the horizon cuts in halves: only the upper half counts.
+  const Corners wall = Rectangle({1.0, 0.0, 0.0}, {0.0, 0.7, 0.0}, {0.0, 0.0, 0.5});
+  const Corners upper = Rectangle({1.0, 0.0, 0.25}, {0.0, 0.7, 0.0}, {0.0, 0.0, 0.25});
+  EXPECT_NEAR(LtcQuadIntegral({1.0, 0.0, 0.0, 1.0}, wall), LtcQuadIntegral({1.0, 0.0, 0.0, 1.0}, upper),
+              1e-14);
+  EXPECT_EQ(
+      LtcQuadIntegral({1.0, 0.0, 0.0, 1.0}, Rectangle({0.0, 0.0, -1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0})),
+      0.0);
+}
+
+TEST(Fit, TransformedLobeIntegratesItsDensity) {
+  const glm::dvec4 m(1.2, 0.3, -0.4, 0.7);
+  const double determinant = m.x * m.w - m.y * m.z;
+  const auto density = [&](const glm::dvec3& v) {  // [Heitz et al. 2016, eq. 1]
+    const glm::dvec3 w(m.x * v.x + m.z * v.z, v.y, m.y * v.x + m.w * v.z);
+    return std::max(w.z, 0.0) * determinant / (glm::pi<double>() * std::pow(glm::dot(w, w), 2.0));
+  };
+  for (const Corners& corners : {Rectangle({0.3, 0.2, 1.0}, {0.8, 0.0, 0.1}, {0.0, 0.5, 0.2}),
+                                 Rectangle({-1.0, 0.3, 0.1}, {0.0, 0.6, 0.2}, {0.2, -0.2, 0.7})})
+    EXPECT_NEAR(LtcQuadIntegral(m, corners), OverRectangle(corners, density), 2e-6);
+}
+
+// The measure's references against area quadrature of the tests' own lobe.
+TEST(Fit, ReferenceIsTheLobesIntegral) {
+  const Corners rectangles[] = {Rectangle({-0.6, 0.1, 0.7}, {0.4, 0.0, 0.2}, {0.0, 0.3, 0.1}),
+                                Rectangle({-1.0, 0.3, 0.1}, {0.0, 0.6, 0.2}, {0.2, -0.2, 0.7})};
+  for (const double roughness : {0.3, 0.6, 1.0}) {
+    for (const double cos_view : {0.9, 0.3}) {
+      for (const Corners& corners : rectangles) {
+        const double own = OverRectangle(corners, [&](const glm::dvec3& light) {
+          double ignored = 0.0;
+          return OwnLobe(roughness * roughness, cos_view, light, &ignored);
+        });
+        EXPECT_NEAR(LobeQuadIntegral(roughness, cos_view, corners, 192), own, 3e-4)
+            << roughness << " " << cos_view;
+      }
+    }
   }
 }
 
