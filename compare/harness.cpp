@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <thread>
 
@@ -36,6 +37,13 @@ std::map<std::string, std::string> Machine() {
           {"cores", std::to_string(std::thread::hardware_concurrency())},
           {"os", Fact("/etc/os-release", "PRETTY_NAME")},
           {"compiler", "g++ " __VERSION__}};
+}
+
+// "EFFECT_TWO_SIDED" → "two_sided", as technique headers write it.
+std::string EffectName(const std::string& define) {
+  std::string name = define.substr(define.find('_') + 1);
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
 }
 
 int CountLit(const RadianceImage& image) {
@@ -168,8 +176,8 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     result.width = pixels.width;
     result.height = pixels.height;
     result.exposure = scene.exposure;
-    for (const auto& [name, on] : SceneEffects(scene)) {
-      if (on != 0) result.effects.push_back(name);
+    for (const auto& [define, on] : SceneEffects(scene)) {
+      if (on != 0) result.effects.push_back(EffectName(define));
     }
     result.truth_relative_error = truth.worst_relative_error;
     result.truth_seconds = truth.seconds;
