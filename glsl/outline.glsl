@@ -1,0 +1,258 @@
+#pragma once
+// The outline of a light's visible part on the sphere of directions, as arcs counter-clockwise seen from outside, and its form
+// factor by Lambert's contour integral. Frame: the shading normal is z. The same mathematics as compare/closed_forms.cpp.
+#include "polar_rule.glsl"
+
+struct Outline {
+  Arc arcs[6];
+  int count;  // 0: nothing is visible
+  float form_factor;
+  bool mirror_inside;  // whether the light covers the mirror direction
+};
+
+// atan(y / x), y ≥ 0, x ≥ 0: three halvings of the angle, then Taylor's series; 1e-13. Drivers' own is good to 2e-5 only.
+float PositiveAngle(float y, float x) {
+  bool steep = y > x;
+  float t = min(y, x) / max(max(y, x), 1e-30);
+  t = t / (1.0 + sqrt(1.0 + t * t));
+  t = t / (1.0 + sqrt(1.0 + t * t));
+  t = t / (1.0 + sqrt(1.0 + t * t));
+  float t2 = t * t;
+  float series = 1.0 + t2 * (-1.0 / 3.0 + t2 * (1.0 / 5.0 + t2 * (-1.0 / 7.0 + t2 * (1.0 / 9.0 - t2 / 11.0))));
+  float angle = 8.0 * t * series;
+  return steep ? 0.5 * kPi - angle : angle;
+}
+
+// The angle in (−π, π] of the direction (x, y).
+float Angle(float y, float x) {
+  float a = PositiveAngle(abs(y), abs(x));
+  a = x < 0.0 ? kPi - a : a;
+  return y < 0.0 ? -a : a;
+}
+
+// Adds the great-circle arc from p to q (any lengths), and its share of the form factor.
+void AddGreatCircle(vec3 p, vec3 q, vec3 mirror, INOUT(Outline) outline) {
+  vec3 a = p * inversesqrt(max(dot(p, p), 1e-30));
+  vec3 b = q * inversesqrt(max(dot(q, q), 1e-30));
+  vec3 middle = a + b;
+  vec3 along = b - a;
+  float cosine = length(middle);
+  float sine = length(along);
+  if (cosine > 1e-7 && sine > 1e-7) {
+    Arc arc;
+    arc.axis_1 = middle / cosine;
+    arc.axis_2 = along / sine;
+    arc.axis_3 = vec3(0.0);
+    arc.sin_1 = 1.0;
+    arc.sin_2 = 1.0;
+    arc.cos_1 = 0.0;
+    arc.cos_2 = 0.0;
+    arc.t1 = sine / (2.0 + cosine);
+    arc.t0 = -arc.t1;
+    outline.arcs[outline.count] = arc;
+    outline.count = outline.count + 1;
+    vec3 plane = cross(arc.axis_1, arc.axis_2);
+    outline.form_factor += PositiveAngle(sine, cosine) * plane.z / kPi;
+    outline.mirror_inside = outline.mirror_inside && dot(plane, mirror) > 0.0;
+  }
+}
+
+// center, half_a, half_b: m, local; the light faces the point. Corners are counter-clockwise seen from outside.
+void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(Outline) outline) {
+  // Sutherland and Hodgman at the horizon; a convex quadrilateral keeps at most five corners.
+  vec3 corners[6];
+  int count = 0;
+  for (int i = 0; i < 4; ++i) {
+    float a = i < 2 ? -1.0 : 1.0;
+    float b = (i == 1 || i == 2) ? 1.0 : -1.0;
+    float c = (i == 0 || i == 3) ? -1.0 : 1.0;
+    float d = (i == 0 || i == 1) ? 1.0 : -1.0;
+    vec3 p = center + a * half_a + b * half_b;
+    vec3 q = center + c * half_a + d * half_b;
+    if (p.z >= 0.0) {
+      corners[count] = p;
+      count = count + 1;
+    }
+    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
+      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
+      corners[count] = vec3(cut.x, cut.y, 0.0);
+      count = count + 1;
+    }
+  }
+  if (count >= 3) {
+    for (int i = 0; i < count; ++i) {
+      AddGreatCircle(corners[i], corners[i + 1 < count ? i + 1 : 0], mirror, outline);
+    }
+  }
+}
+
+// The elliptic cone of directions that a disk or a sphere covers, as in compare/closed_forms.h: axis_1 is the wider one.
+struct Cone {
+  vec3 axis_1;
+  vec3 axis_2;
+  vec3 axis_3;
+  float sin_1;
+  float cos_1;
+  float sin_2;
+  float cos_2;
+};
+
+vec3 AnyPerpendicular(vec3 v) {
+  vec3 axis = abs(v.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  vec3 p = cross(v, axis);
+  return p * inversesqrt(dot(p, p));
+}
+
+// center: m; normal: unit, towards the origin's side; radius: m. In the plane of centre and normal c = (ρ, h), and the cone's
+// dual matrix c cᵀ − R²(1 − n nᵀ) has there the eigenvalues μ > 0 and −R²h²/μ; across it −R².
+Cone DiskCone(vec3 center, vec3 normal, float radius) {
+  // Nearer the plane than this the cone is all rounding.
+  float h = max(-dot(center, normal), 1e-6 * radius);
+  vec3 in_plane = center + normal * h;
+  in_plane -= normal * dot(in_plane, normal);
+  float rho = length(in_plane);
+  vec3 radial = AnyPerpendicular(normal);
+  if (rho > 1e-6 * (radius + h)) {
+    radial = in_plane / rho;
+  }
+  float difference = (rho - radius) * (rho + radius);
+  float mean = 0.5 * (difference + h * h);
+  float root = sqrt(mean * mean + radius * radius * h * h);
+  float mu = mean > 0.0 ? mean + root : radius * radius * h * h / (root - mean);
+  float a = rho > radius ? 0.5 * (difference - h * h) + root : rho * h;
+  float b = rho > radius ? rho * h : mu - difference;
+  float inv = inversesqrt(max(a * a + b * b, 1e-30));
+  Cone cone;
+  cone.axis_3 = (radial * a - normal * b) * inv;
+  cone.axis_1 = cross(radial, normal);
+  cone.axis_2 = cross(cone.axis_3, cone.axis_1);
+  float inv_1 = inversesqrt(radius * radius + mu);
+  float rm = sqrt(mu);
+  float inv_2 = inversesqrt(radius * radius * h * h / mu + mu);
+  cone.sin_1 = radius * inv_1;
+  cone.cos_1 = rm * inv_1;
+  cone.sin_2 = radius * h / rm * inv_2;
+  cone.cos_2 = rm * inv_2;
+  return cone;
+}
+
+// center: m; the origin is outside.
+Cone SphereCone(vec3 center, float radius) {
+  Cone cone;
+  float distance2 = dot(center, center);
+  float inv = inversesqrt(distance2);
+  cone.axis_3 = center * inv;
+  // Towards the highest point of the outline; any direction serves where the centre is overhead.
+  vec3 up = vec3(0.0, 0.0, 1.0) - cone.axis_3 * cone.axis_3.z;
+  float up2 = dot(up, up);
+  cone.axis_1 = AnyPerpendicular(cone.axis_3);
+  if (up2 > 1e-10) {
+    cone.axis_1 = up * inversesqrt(up2);
+  }
+  cone.axis_2 = cross(cone.axis_3, cone.axis_1);
+  float d = distance2 * inv;
+  cone.sin_1 = radius * inv;
+  cone.cos_1 = sqrt((d - radius) * (d + radius)) * inv;
+  cone.sin_2 = cone.sin_1;
+  cone.cos_2 = cone.cos_1;
+  return cone;
+}
+
+// atanh(y)/κ and atan(y)/κ with y = κx, continued to κ = 0: the series' next term is 2e-8 of the first at 0.1.
+float AtanhOver(float kappa, float x) {
+  float y = kappa * x;
+  float y2 = y * y;
+  if (abs(y) < 0.1) {
+    return x * (1.0 + y2 * (1.0 / 3.0 + y2 * (1.0 / 5.0 + y2 * (1.0 / 7.0 + y2 / 9.0))));
+  }
+  return 0.5 * log((1.0 + y) / (1.0 - y)) / kappa;
+}
+float AtanOver(float kappa, float x) {
+  float y = kappa * x;
+  float y2 = y * y;
+  if (abs(y) < 0.1) {
+    return x * (1.0 + y2 * (-1.0 / 3.0 + y2 * (1.0 / 5.0 + y2 * (-1.0 / 7.0 + y2 / 9.0))));
+  }
+  return Angle(y, 1.0) / kappa;
+}
+
+// A point of the outline where it meets the horizon: the ellipse's own angle ψ', cosine and sine.
+vec3 ConeDirection(Cone cone, float cos_psi, float sin_psi) {
+  float x1 = cone.cos_1 * cos_psi;
+  float x2 = cone.cos_2 * sin_psi;
+  return cone.axis_1 * (cone.sin_1 * cos_psi) + cone.axis_2 * (cone.sin_2 * sin_psi) + cone.axis_3 * sqrt(x1 * x1 + x2 * x2);
+}
+
+void ConeOutline(Cone cone, vec3 mirror, INOUT(Outline) outline) {
+  // Height over the outline, times positive factors: m + a cosψ' + b sinψ'; tanψ = tanψ'·cos_1/cos_2.
+  float m = cone.axis_3.z * cone.cos_1 * cone.cos_2;
+  float a = cone.axis_1.z * cone.sin_1 * cone.cos_2;
+  float b = cone.axis_2.z * cone.sin_2 * cone.cos_1;
+  float amplitude = sqrt(a * a + b * b);
+  if (m > -amplitude) {
+    float begin = 0.0;
+    float end = 2.0 * kPi;
+    bool crossing = m < amplitude;
+    if (crossing) {
+      float x = m / amplitude;
+      float y = sqrt(max((1.0 - x) * (1.0 + x), 0.0));
+      // top ± half as complex products, half = acos(−x).
+      float top_cos = a / amplitude;
+      float top_sin = b / amplitude;
+      float begin_cos = -top_cos * x + top_sin * y;
+      float begin_sin = -top_sin * x - top_cos * y;
+      float end_cos = -top_cos * x - top_sin * y;
+      float end_sin = -top_sin * x + top_cos * y;
+      begin = Angle(begin_sin * cone.cos_1, begin_cos * cone.cos_2);
+      end = Angle(end_sin * cone.cos_1, end_cos * cone.cos_2);
+      end = end <= begin ? end + 2.0 * kPi : end;
+      vec3 p = ConeDirection(cone, cos(end), sin(end));
+      vec3 q = ConeDirection(cone, cos(begin), sin(begin));
+      p = vec3(p.x, p.y, 0.0);
+      q = vec3(q.x, q.y, 0.0);
+      float chord = Angle(p.x * q.y - p.y * q.x, p.x * q.x + p.y * q.y);
+      float tan2 = (cone.sin_1 * cone.cos_2 - cone.sin_2 * cone.cos_1) * (cone.sin_1 * cone.cos_2 + cone.sin_2 * cone.cos_1);
+      float tangents = sqrt(max(tan2, 0.0)) / (cone.cos_1 * cone.cos_2);  // √(tan_1² − tan_2²)
+      float kappa = tangents * cone.cos_1;
+      float j = tangents * cone.cos_2;
+      float i1 = cone.sin_2 / cone.cos_2 * cone.cos_1 * cone.cos_1 * (AtanhOver(kappa, end_sin) - AtanhOver(kappa, begin_sin));
+      float i2 = cone.sin_1 / cone.cos_1 * cone.cos_2 * cone.cos_2 * (AtanOver(j, begin_cos) - AtanOver(j, end_cos));
+      float arc = -cone.axis_1.z * i1 - cone.axis_2.z * i2 + cone.axis_3.z * cone.sin_1 * cone.sin_2 * (end - begin);
+      AddGreatCircle(p, q, mirror, outline);  // its share of the form factor is in the sum that follows
+      outline.form_factor = (arc + chord) / (2.0 * kPi);
+    } else {
+      outline.form_factor = cone.axis_3.z * cone.sin_1 * cone.sin_2;
+    }
+    // Arcs cut at the ends of the axes; at most five quarters, the first and the last may be short.
+    float quarter = 0.5 * kPi;
+    float first = floor(begin / quarter);
+    for (int i = 0; i < 5; ++i) {
+      float low = first + float(i);
+      float from = max(begin, low * quarter);
+      float to = min(end, (low + 1.0) * quarter);
+      if (to - from > 1e-6) {
+        float zero = floor(0.5 * (low + 1.0));  // half turns from axis_1
+        float even = zero - 2.0 * floor(0.5 * zero);
+        float sense = 1.0 - 2.0 * even;
+        Arc arc;
+        arc.axis_1 = cone.axis_1 * sense;
+        arc.axis_2 = cone.axis_2 * sense;
+        arc.axis_3 = cone.axis_3;
+        arc.sin_1 = cone.sin_1;
+        arc.sin_2 = cone.sin_2;
+        arc.cos_1 = cone.cos_1;
+        arc.cos_2 = cone.cos_2;
+        float h0 = 0.5 * (from - zero * kPi);
+        float h1 = 0.5 * (to - zero * kPi);
+        arc.t0 = sin(h0) / cos(h0);
+        arc.t1 = sin(h1) / cos(h1);
+        outline.arcs[outline.count] = arc;
+        outline.count = outline.count + 1;
+      }
+    }
+    float m1 = dot(mirror, cone.axis_1) * cone.cos_1 / cone.sin_1;
+    float m2 = dot(mirror, cone.axis_2) * cone.cos_2 / cone.sin_2;
+    float m3 = dot(mirror, cone.axis_3);
+    outline.mirror_inside = m3 > 0.0 && m1 * m1 + m2 * m2 < m3 * m3;
+  }
+}

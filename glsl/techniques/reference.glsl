@@ -1,0 +1,270 @@
+/*---
+summary = "The truth's own integrals in the shader: closed form factors, Gauss rays in the slope plane; no noise"
+citation = "Lambert 1760; Walter et al. 2007; Heitz 2014"
+author_note = "Ours: the rule of the ground truth at a fixed number of nodes"
+shapes = ["rectangle", "disk", "sphere"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["two_sided", "fresnel", "many_lights"]
+exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle", "ggx_disk", "ggx_sphere", "point_limit"]
+
+[[option]]
+name = "level"
+summary = "Nodes along each part of the outline and along each ray from the lobe's centre"
+choices = [
+  ["normal", "8 and 6: about 1e-3"],
+  ["dense", "16 and 12: what float can hold"],
+]
+---*/
+#include "gauss_nodes.glsl"
+#include "outline.glsl"
+
+// Shadowing changes over n·l of the order of α: a panel of its own where that is less than 1/kThinLayer of the way.
+const float kThinLayer = 6.0;
+
+// The arc's point nearest to `to`: (t, the foot on the tangent there as an offset in t, speed²), and its slope.
+vec3 NearestOnArc(Arc arc, LobeView view, vec2 to, out vec2 nearest) {
+  const int kChords = 4;
+  const int kCuts = 4;
+  const int kSteps = 3;
+  vec2 slope;
+  vec2 derivative;
+  ArcSlope(arc, view, arc.t0, slope, derivative);
+  vec2 begin = slope - to;
+  float t_begin = arc.t0;
+  float least = 1e30;
+  vec4 ends = vec4(0.0);  // of the nearest chord
+  vec2 times = vec2(arc.t0, arc.t1);
+  float part = 0.0;
+  for (int i = 1; i <= kChords; ++i) {
+    float t = mix(arc.t0, arc.t1, float(i) / float(kChords));
+    ArcSlope(arc, view, t, slope, derivative);
+    vec2 end = slope - to;
+    vec2 along = end - begin;
+    float x = clamp(-dot(begin, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
+    vec2 at = begin + along * x;
+    if (dot(at, at) < least) {
+      least = dot(at, at);
+      ends = vec4(begin, end);
+      times = vec2(t_begin, t);
+      part = x;
+    }
+    begin = end;
+    t_begin = t;
+  }
+  float low = times.x;
+  float high = times.y;
+  for (int cut = 0; cut < kCuts; ++cut) {
+    float t = 0.5 * (times.x + times.y);
+    ArcSlope(arc, view, t, slope, derivative);
+    vec2 middle = slope - to;
+    vec2 along_0 = middle - ends.xy;
+    vec2 along_1 = ends.zw - middle;
+    float x0 = clamp(-dot(ends.xy, along_0) / max(dot(along_0, along_0), 1e-30), 0.0, 1.0);
+    float x1 = clamp(-dot(middle, along_1) / max(dot(along_1, along_1), 1e-30), 0.0, 1.0);
+    vec2 at_0 = ends.xy + along_0 * x0;
+    vec2 at_1 = middle + along_1 * x1;
+    bool first = dot(at_0, at_0) <= dot(at_1, at_1);
+    part = first ? x0 : x1;
+    ends = first ? vec4(ends.xy, middle) : vec4(middle, ends.zw);
+    times = first ? vec2(times.x, t) : vec2(t, times.y);
+  }
+  float t = mix(times.x, times.y, part);
+  float offset = 0.0;
+  float speed2 = 1.0;
+  for (int i = 0; i <= kSteps; ++i) {
+    ArcSlope(arc, view, t, slope, derivative);
+    speed2 = max(dot(derivative, derivative), 1e-30);
+    offset = -dot(slope - to, derivative) / speed2;
+    if (i < kSteps) t = clamp(t + offset, low, high);
+  }
+  nearest = slope;
+  return vec3(t, offset, speed2);
+}
+
+// ∫ r dr along a ray of the lobe over α²/π: from `origin`, r = origin + size·p(y), y up to `reach`.
+vec2 RayIntegral(LobeView view, vec2 center, vec2 direction, float origin, float size, float reach) {
+  vec2 sum = vec2(0.0);
+  float alpha2 = view.alpha * view.alpha;
+  float center2 = dot(center, center);
+  float along = dot(center, direction);
+  for (int i = 0; i < RAY_NODES; ++i) {
+    float p;
+    float derivative;
+    RayMap(reach * kRayNodes[i].x, p, derivative);
+    float r = origin + size * p;
+    float slope2 = max(center2 + r * (2.0 * along + r), 0.0);
+    float tail = alpha2 + slope2;
+    sum += LobeWeights(view, center.x + r * direction.x, slope2) * (kRayNodes[i].y * derivative * (r / tail) / tail);
+  }
+  return sum * (reach * size);
+}
+
+// One stretch of an arc, nodes crowded about t_center.
+vec2 PanelIntegral(Arc arc, LobeView view, vec2 center, float scale, float ring, float t0, float t1, float t_center, float width) {
+  vec2 sum = vec2(0.0);
+  float x0 = (t0 - t_center) / width;
+  float x1 = (t1 - t_center) / width;
+  float y0 = RayMapInverse(abs(x0));
+  float y1 = RayMapInverse(abs(x1));
+  y0 = x0 < 0.0 ? -y0 : y0;
+  y1 = x1 < 0.0 ? -y1 : y1;
+  for (int i = 0; i < NODES; ++i) {
+    float p;
+    float dp;
+    RayMap(mix(y0, y1, kNodes[i].x), p, dp);
+    vec2 slope;
+    vec2 derivative;
+    ArcSlope(arc, view, clamp(t_center + width * p, t0, t1), slope, derivative);
+    vec2 offset = slope - center;
+    float length2 = max(dot(offset, offset), 1e-30);
+    float inv = inversesqrt(length2);
+    vec2 direction = offset * inv;
+    float span = length2 * inv - ring;
+    float turn = (direction.x * derivative.y - direction.y * derivative.x) * inv * (width * dp * (y1 - y0) * kNodes[i].y);
+    vec2 ray = vec2(0.0);
+    float layer = LayerLength(view, slope, direction);
+    if (layer * kThinLayer < span) {
+      float part = min(sqrt(layer * span), 0.5 * span);
+      ray += RayIntegral(view, center, direction, ring + span, -layer, RayMapInverse(part / layer)) * -1.0;
+      span -= part;
+    }
+    float size = span < 0.0 ? -scale : scale;
+    ray += RayIntegral(view, center, direction, ring, size, RayMapInverse(abs(span) / scale));
+    sum += ray * turn;
+  }
+  return sum;
+}
+
+// How much of an arc's end is a panel of its own: 0 where nothing there is thinner than the nodes lie.
+float CrowdedEnd(float end, float size, float foot, float width, float range) {
+  float spacing = sqrt(width * width + (end - foot) * (end - foot));
+  return size * kThinLayer < min(spacing, range) ? min(sqrt(size * spacing), 0.5 * range) : 0.0;
+}
+
+// ∫ D G2 / (4 cosθ_v) dω over the outlined region, with Fresnel 1 and with Schlick's weight.
+vec2 SpecularIntegrals(Outline outline, LobeView view) {
+  vec2 center = vec2(0.0);
+  float ring = 0.0;
+  if (!outline.mirror_inside) {
+    float least = 1e30;
+    for (int i = 0; i < outline.count; ++i) {
+      vec2 slope;
+      NearestOnArc(outline.arcs[i], view, vec2(0.0), slope);
+      if (dot(slope, slope) < least) {
+        least = dot(slope, slope);
+        center = slope;
+      }
+    }
+  }
+  float center2 = dot(center, center);
+  float scale = sqrt(view.alpha * view.alpha + center2);
+  float blur = scale;
+  // Where rays to the far side would pass close by 0, over the lobe's peak, radial rays from a ring serve better.
+  if (center2 > 0.25 * view.alpha * view.alpha) {
+    bool over_peak = false;
+    for (int i = 0; i < outline.count; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        vec2 slope;
+        vec2 derivative;
+        ArcSlope(outline.arcs[i], view, mix(outline.arcs[i].t0, outline.arcs[i].t1, 0.5 * float(k)), slope, derivative);
+        vec2 ray = slope - center;
+        float length2 = dot(ray, ray);
+        float back = -dot(ray, center);
+        over_peak = over_peak || (back > 0.0 && back < length2 && back * back > 0.75 * center2 * length2);
+      }
+    }
+    if (over_peak) {
+      ring = sqrt(center2);
+      center = vec2(0.0);
+      blur = 0.0;
+    }
+  }
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < outline.count; ++i) {
+    Arc arc = outline.arcs[i];
+    vec2 slope;
+    vec3 nearest = NearestOnArc(arc, view, center, slope);
+    vec2 offset = slope - center;
+    float across = max(dot(offset, offset) - nearest.y * nearest.y * nearest.z, 0.0);
+    float width = clamp(sqrt((blur * blur + across) / nearest.z), 1e-7, 8.0);
+    float foot = nearest.x + nearest.y;
+    float height;
+    float rise;
+    ArcHeight(arc, arc.t0, height, rise);
+    float layer_0 = (max(height, 0.0) + LayerHeight(view)) / max(rise, 1e-9);
+    ArcHeight(arc, arc.t1, height, rise);
+    float layer_1 = (max(height, 0.0) + LayerHeight(view)) / max(-rise, 1e-9);
+    if (arc.cos_2 > 0.0) {
+      float tip = max(0.5 * arc.cos_1 / arc.cos_2, 1e-6);
+      layer_0 = abs(arc.t0) < 1e-6 ? min(layer_0, tip) : layer_0;
+      layer_1 = abs(arc.t1) < 1e-6 ? min(layer_1, tip) : layer_1;
+    }
+    float range = arc.t1 - arc.t0;
+    float cut_0 = arc.t0 + CrowdedEnd(arc.t0, layer_0, foot, width, range);
+    float cut_1 = arc.t1 - CrowdedEnd(arc.t1, layer_1, foot, width, range);
+    // Up to three panels in one loop, so that the rays' text stands once in the compiled shader.
+    for (int k = 0; k < 3; ++k) {
+      float t0 = k == 0 ? cut_0 : (k == 1 ? arc.t0 : cut_1);
+      float t1 = k == 0 ? cut_1 : (k == 1 ? cut_0 : arc.t1);
+      float t_center = k == 0 ? foot : (k == 1 ? arc.t0 : arc.t1);
+      float size = k == 0 ? width : (k == 1 ? layer_0 : layer_1);
+      if (t1 > t0) {
+        sum += PanelIntegral(arc, view, center, scale, ring, t0, t1, t_center, size);
+      }
+    }
+  }
+  return max(sum * (view.alpha * view.alpha / kPi), vec2(0.0));
+}
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  LobeView view;
+  view.cos_v = clamp(dot(surface.normal, to_view), 1e-4, 1.0);
+  view.alpha = surface.alpha;
+  vec3 across = to_view - surface.normal * dot(surface.normal, to_view);
+  float across2 = dot(across, across);
+  view.sin_v = sqrt(across2);
+  vec3 x_axis = AnyPerpendicular(surface.normal);
+  if (across2 > 1e-10) {
+    x_axis = across * inversesqrt(across2);
+  }
+  vec3 y_axis = cross(surface.normal, x_axis);
+  vec3 mirror = vec3(-view.sin_v, 0.0, view.cos_v);
+  vec3 to_center = light.center - surface.position;
+  vec3 center = vec3(dot(x_axis, to_center), dot(y_axis, to_center), dot(surface.normal, to_center));
+
+  Outline outline;
+  outline.count = 0;
+  outline.form_factor = 0.0;
+  outline.mirror_inside = true;
+  if (light.shape == SHAPE_RECTANGLE) {
+#if EFFECT_RECTANGLE
+    vec3 half_a = vec3(dot(x_axis, light.half_axis_x), dot(y_axis, light.half_axis_x), dot(surface.normal, light.half_axis_x));
+    vec3 half_b = vec3(dot(x_axis, light.half_axis_y), dot(y_axis, light.half_axis_y), dot(surface.normal, light.half_axis_y));
+    RectangleOutline(center, half_a, half_b, mirror, outline);
+#endif
+  } else if (light.shape == SHAPE_DISK) {
+#if EFFECT_DISK
+    vec3 normal = vec3(dot(x_axis, light.normal), dot(y_axis, light.normal), dot(surface.normal, light.normal));
+    if (dot(normal, center) < 0.0) {
+      ConeOutline(DiskCone(center, normal, light.half_size.x), mirror, outline);
+    }
+#endif
+  } else {
+#if EFFECT_SPHERE
+    // Where the point is inside it sees no outside.
+    if (dot(center, center) > 1.000001 * light.half_size.x * light.half_size.x) {
+      ConeOutline(SphereCone(center, light.half_size.x), mirror, outline);
+    }
+#endif
+  }
+  Radiance result;
+  result.diffuse = surface.diffuse_albedo * light.radiance * clamp(outline.form_factor, 0.0, 1.0);
+  vec2 specular = SpecularIntegrals(outline, view);
+#if EFFECT_FRESNEL
+  result.specular = light.radiance * (surface.f0 * (specular.x - specular.y) + specular.y);
+#else
+  result.specular = light.radiance * surface.f0 * specular.x;
+#endif
+  return result;
+}
