@@ -39,5 +39,6 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line);
 void AddRender(CLI::App& app, int& status);
 void AddList(CLI::App& app, int& status);
 void AddFit(CLI::App& app, int& status);
+void AddCheck(CLI::App& app, int& status);
 
 }  // namespace arealab

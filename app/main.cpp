@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   arealab::AddRender(app, status);
   arealab::AddList(app, status);
   arealab::AddFit(app, status);
+  arealab::AddCheck(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

@@ -1,0 +1,283 @@
+#include "compare/check_page.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+
+#include "compare/image_files.h"
+#include "compare/metrics.h"
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+namespace fs = std::filesystem;
+using Rgb = std::array<std::uint8_t, 3>;
+
+constexpr double kGoldenRange = 0.02;  // four times the golden test's threshold
+constexpr double kTruthRange = 0.5;
+
+// The report's palettes (signedColor and magnitudeColor of report.js) at eighths of their range.
+constexpr std::array<Rgb, 17> kSigned{{{169, 234, 255},
+                                       {105, 207, 246},
+                                       {77, 176, 221},
+                                       {55, 146, 194},
+                                       {41, 116, 164},
+                                       {31, 87, 132},
+                                       {24, 61, 98},
+                                       {18, 37, 62},
+                                       {15, 15, 15},
+                                       {56, 28, 7},
+                                       {88, 48, 7},
+                                       {118, 71, 12},
+                                       {147, 97, 27},
+                                       {175, 125, 48},
+                                       {201, 156, 74},
+                                       {225, 187, 106},
+                                       {248, 220, 142}}};
+constexpr std::array<Rgb, 9> kMagnitude{{{9, 3, 33},
+                                         {49, 2, 73},
+                                         {99, 0, 93},
+                                         {155, 0, 94},
+                                         {207, 32, 75},
+                                         {241, 88, 41},
+                                         {255, 147, 40},
+                                         {255, 201, 106},
+                                         {255, 248, 189}}};
+constexpr Rgb kNonfinite{255, 0, 255}, kUnlit{84, 88, 95};
+
+// t in [0, 1] along the palette.
+template <std::size_t kCount>
+Rgb Color(const std::array<Rgb, kCount>& palette, double t) {
+  const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(kCount - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(place), kCount - 2);
+  const double part = place - static_cast<double>(below);
+  Rgb color;
+  for (std::size_t c = 0; c < 3; ++c) {
+    color[c] = static_cast<std::uint8_t>(
+        std::lround((1.0 - part) * palette[below][c] + part * palette[below + 1][c]));
+  }
+  return color;
+}
+
+std::string Base64(const std::vector<unsigned char>& bytes) {
+  static const char* const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(4 * (bytes.size() / 3 + 1));
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t b = 0; b < 3; ++b) group = group << 8 | (b < have ? bytes[i + b] : 0u);
+    for (std::size_t d = 0; d < 4; ++d) text += d <= have ? kDigits[group >> (18 - 6 * d) & 63u] : '=';
+  }
+  return text;
+}
+
+// The figure of a picture, as PNG inside the page.
+std::string Figure(const std::vector<Rgb>& pixels, int width, const std::string& caption) {
+  const int height = static_cast<int>(pixels.size() / static_cast<std::size_t>(width));
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  auto output = OIIO::ImageOutput::create("png");
+  const OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close()) {
+    throw std::runtime_error("OpenImageIO cannot encode a PNG in memory");
+  }
+  return fmt::format(
+      "<figure><img alt=\"{0}\" width=\"{1}\" height=\"{2}\" "
+      "src=\"data:image/png;base64,{3}\"><figcaption>{0}</figcaption></figure>\n",
+      caption, width, height, Base64(bytes));
+}
+
+bool Finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// sRGB [IEC 61966-2-1] of radiance × 2^exposure.
+std::vector<Rgb> Shown(const std::vector<glm::vec3>& radiance, double exposure) {
+  const double gain = std::exp2(exposure);
+  std::vector<Rgb> pixels;
+  for (const glm::vec3& v : radiance) {
+    Rgb code = kNonfinite;
+    for (int c = 0; c < 3 && Finite(v); ++c) {
+      const double linear = std::clamp(static_cast<double>(v[c]) * gain, 0.0, 1.0);
+      const double encoded =
+          linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+      code[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::lround(255.0 * encoded));
+    }
+    pixels.push_back(code);
+  }
+  return pixels;
+}
+
+struct Maps {
+  std::vector<Rgb> difference, magnitude;
+};
+
+// As the report's maps: luminance relative to the reference's, and the largest channel's; linear up to
+// `range`.
+Maps MapsOf(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b, double range) {
+  double sum = 0.0;
+  int count = 0;
+  for (const glm::vec3& v : b) {
+    if (!Finite(v) || v == glm::vec3(0.0f)) continue;
+    sum += Luminance(v);
+    ++count;
+  }
+  const double floor = count == 0 ? 0.0 : 0.01 * sum / count;
+  Maps maps;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!Finite(a[i]) || !Finite(b[i])) {
+      maps.difference.push_back(kNonfinite);
+      maps.magnitude.push_back(kNonfinite);
+    } else if (a[i] == glm::vec3(0.0f) && b[i] == glm::vec3(0.0f)) {
+      maps.difference.push_back(kUnlit);
+      maps.magnitude.push_back(kUnlit);
+    } else {
+      const double base =
+          std::max({Luminance(b[i]), floor, 1e-30});  // black reference: any difference is off the scale
+      const glm::vec3 d = glm::abs(a[i] - b[i]);
+      maps.difference.push_back(
+          Color(kSigned, 0.5 + 0.5 * (Luminance(a[i]) - Luminance(b[i])) / base / range));
+      maps.magnitude.push_back(
+          Color(kMagnitude, static_cast<double>(std::max({d.x, d.y, d.z})) / base / range));
+    }
+  }
+  return maps;
+}
+
+std::string Escaped(const std::string& text) {
+  std::string escaped;
+  for (char c : text) {
+    switch (c) {
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string Comparison(const CheckCase& row, const RadianceImage& reference, const std::string& name,
+                       double range) {
+  const RadianceImage& image = *row.image;
+  if (reference.size() != image.size() || reference.width != image.width) {
+    return fmt::format("<p>The {} has another size: {}×{}.</p>\n", name, reference.width, reference.height);
+  }
+  std::string html = fmt::format("<h3>Against the {}</h3>\n", name);
+  const std::span<const glm::vec3> emission =
+      row.emission ? std::span<const glm::vec3>(*row.emission) : std::span<const glm::vec3>();
+  for (const std::string lobe : {"total", "diffuse", "specular"}) {
+    const auto of = [&](const RadianceImage& from) {
+      return lobe == "total" ? TotalRadiance(from) : lobe == "diffuse" ? from.diffuse : from.specular;
+    };
+    const std::vector<glm::vec3> a = of(image), b = of(reference);
+    const Maps maps = MapsOf(a, b, range);
+    const bool whole = lobe == "total";
+    html += "<div class=\"row\">\n";
+    html += Figure(Shown(whole ? Picture(image, emission) : a, row.exposure), image.width, lobe + ": result");
+    html += Figure(Shown(whole ? Picture(reference, emission) : b, row.exposure), image.width,
+                   fmt::format("{}: {}", lobe, name));
+    html += Figure(maps.difference, image.width,
+                   fmt::format("signed difference, −{0:g} % … +{0:g} %", 100.0 * range));
+    html += Figure(maps.magnitude, image.width, fmt::format("magnitude, 0 … {:g} %", 100.0 * range));
+    html += "</div>\n";
+  }
+  return html;
+}
+
+// The result alone, where there is nothing to hold it against.
+bool NeedsTruth(const CheckCase& row) {
+  if (!row.golden) return true;
+  return std::any_of(row.failures.begin(), row.failures.end(), [](const CheckFailure& failure) {
+    return failure.kind == CheckKind::kBand || failure.kind == CheckKind::kMissingBand;
+  });
+}
+
+std::string Ramp(bool is_signed) {
+  std::string stops;
+  constexpr int kStops = 16;
+  for (int i = 0; i <= kStops; ++i) {
+    const Rgb c = is_signed ? Color(kSigned, i / double{kStops}) : Color(kMagnitude, i / double{kStops});
+    stops += fmt::format("{}rgb({} {} {})", i == 0 ? "" : ", ", c[0], c[1], c[2]);
+  }
+  return fmt::format("<span class=\"ramp\" style=\"background: linear-gradient(90deg, {})\"></span>", stops);
+}
+
+constexpr const char* kStyle = R"(
+:root { color-scheme: light dark; }
+body { margin: 2rem auto; width: min(100% - 2rem, 72rem); font: 15px/1.5 system-ui, "Segoe UI", Roboto, Arial, sans-serif; overflow-wrap: anywhere; }
+h1 { font-size: 1.6rem; } h2 { margin: 2.4rem 0 .4rem; font-size: 1.2rem; } h3 { margin: 1rem 0 .3rem; font-size: 1rem; }
+pre { padding: .6rem .8rem; background: #8882; border-radius: 4px; white-space: pre-wrap; }
+.row { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(13rem, 45%), 1fr)); gap: .8rem; margin-bottom: .8rem; }
+figure { margin: 0; } figcaption { font-size: .85rem; opacity: .8; }
+img { width: 100%; height: auto; image-rendering: pixelated; display: block; }
+.ramp { display: inline-block; width: 12rem; height: .8rem; margin: 0 .5rem; vertical-align: middle; }
+section { border-top: 1px solid #8886; }
+)";
+
+}  // namespace
+
+void WriteCheckPage(const CheckResult& result, const std::string& command, const std::string& common,
+                    const fs::path& file) {
+  std::string html = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\"><title>AreaLab: image tests that "
+      "failed</title>\n<style>{}</style></head>\n<body>\n"
+      "<h1>{} failed</h1>\n<p>Drawn by {}; the goldens by {}.</p>\n",
+      kStyle, result.failures() == 1 ? "One image test" : fmt::format("{} image tests", result.failures()),
+      Escaped(result.renderer),
+      Escaped(result.golden_renderer.empty() ? "nobody yet" : result.golden_renderer));
+  html += fmt::format(
+      "<p>Signed: too dark {} too bright. Magnitude: none {} much. Relative to the reference's luminance, at "
+      "least to "
+      "1 % of its mean. Grey is unlit, magenta not finite.</p>\n",
+      Ramp(true), Ramp(false));
+  for (const CheckCase& row : result.cases) {
+    if (row.failures.empty()) continue;
+    html += fmt::format("<section>\n<h2>{}: {}</h2>\n<ul>\n", Escaped(row.scene), Escaped(row.variant));
+    for (const CheckFailure& failure : row.failures) {
+      html += fmt::format("<li><b>{}</b>: {}</li>\n", Name(failure.kind), Escaped(failure.message));
+    }
+    html += "</ul>\n";
+    if (!row.rerun.empty())
+      html += fmt::format("<pre>{}</pre>\n", Escaped(command + " " + row.rerun + common));
+    if (row.image && row.golden) html += Comparison(row, *row.golden, "golden", kGoldenRange);
+    if (row.image && row.truth && NeedsTruth(row)) html += Comparison(row, *row.truth, "truth", kTruthRange);
+    html += "</section>\n";
+  }
+  html += "</body>\n</html>\n";
+
+  std::error_code error;
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+  const fs::path temporary = file.string() + fmt::format(".{}.tmp", getpid());
+  std::ofstream stream(temporary, std::ios::binary);
+  stream << html;
+  stream.close();
+  if (stream) fs::rename(temporary, file, error);
+  if (!stream || error) {
+    throw InputError(fmt::format("{}: cannot be written; expected a folder with room that may be written to",
+                                 file.string()));
+  }
+}
+
+}  // namespace arealab
