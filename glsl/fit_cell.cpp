@@ -222,53 +222,41 @@ int MaskNodes(const View& view, int nodes) {
   return std::clamp(static_cast<int>(nodes * std::sqrt(0.35 / view.cosine)) / 2 * 2, nodes, 64);
 }
 
-// A quad's integral of ρ, by the closed form of a control lobe and a mask over the nodes for what the control
-// misses.
-class MaskedIntegral {
+// Sums over the nodes inside a quad.
+class MaskedSum {
  public:
-  MaskedIntegral(const Nodes& nodes, const std::vector<double>& residual) {
+  MaskedSum(const Nodes& nodes, const std::vector<double>& values) {
+    const auto padded = static_cast<Eigen::Index>((nodes.size() + kLanes - 1) / kLanes * kLanes);
+    for (Eigen::ArrayXf* array : {&x_, &y_, &z_, &share_}) array->setZero(padded);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      x_.push_back(static_cast<float>(nodes.x[i]));
-      y_.push_back(static_cast<float>(nodes.y[i]));
-      z_.push_back(static_cast<float>(nodes.z[i]));
-      share_.push_back(static_cast<float>(nodes.weight[i] * residual[i]));
+      const auto at = static_cast<Eigen::Index>(i);
+      x_[at] = static_cast<float>(nodes.x[i]);
+      y_[at] = static_cast<float>(nodes.y[i]);
+      z_[at] = static_cast<float>(nodes.z[i]);
+      share_[at] = static_cast<float>(nodes.weight[i] * values[i]);
     }
   }
-  double Sum(const Quad& quad) const {
-    std::array<float, 12> n;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const glm::dvec3 unit = glm::normalize(quad.normal[i]);
-      n[3 * i] = static_cast<float>(unit.x);
-      n[3 * i + 1] = static_cast<float>(unit.y);
-      n[3 * i + 2] = static_cast<float>(unit.z);
+
+  double operator()(const Quad& quad) const {
+    using Lanes = Eigen::Array<float, kLanes, 1>;
+    // Scaled so that the clamp below is a step, but for directions within 1e-25 of an edge's plane.
+    constexpr double kSteep = 1e25;
+    std::array<glm::vec3, 4> n;
+    for (std::size_t i = 0; i < 4; ++i) n[i] = glm::vec3(glm::normalize(quad.normal[i]) * kSteep);
+    Lanes sum = Lanes::Zero();
+    for (Eigen::Index i = 0; i < x_.size(); i += kLanes) {
+      const Lanes x = x_.segment<kLanes>(i), y = y_.segment<kLanes>(i), z = z_.segment<kLanes>(i);
+      const Lanes d0 = x * n[0].x + y * n[0].y + z * n[0].z, d1 = x * n[1].x + y * n[1].y + z * n[1].z;
+      const Lanes d2 = x * n[2].x + y * n[2].y + z * n[2].z, d3 = x * n[3].x + y * n[3].y + z * n[3].z;
+      const Lanes inside = d0.min(d1).min(d2.min(d3)).max(0.0f).min(1.0f);
+      sum += inside * share_.segment<kLanes>(i);
     }
-    float sum = 0.0f;
-    std::array<float, 8> partial{};
-    const std::size_t blocks = x_.size() / 8;
-    for (std::size_t block = 0; block < blocks; ++block) {
-      for (std::size_t lane = 0; lane < 8; ++lane) {
-        const std::size_t i = block * 8 + lane;
-        const float d0 = n[0] * x_[i] + n[1] * y_[i] + n[2] * z_[i];
-        const float d1 = n[3] * x_[i] + n[4] * y_[i] + n[5] * z_[i];
-        const float d2 = n[6] * x_[i] + n[7] * y_[i] + n[8] * z_[i];
-        const float d3 = n[9] * x_[i] + n[10] * y_[i] + n[11] * z_[i];
-        const float least = std::min(std::min(d0, d1), std::min(d2, d3));
-        partial[lane] += least > 0.0f ? share_[i] : 0.0f;
-      }
-    }
-    for (std::size_t i = blocks * 8; i < x_.size(); ++i) {
-      const float d0 = n[0] * x_[i] + n[1] * y_[i] + n[2] * z_[i];
-      const float d1 = n[3] * x_[i] + n[4] * y_[i] + n[5] * z_[i];
-      const float d2 = n[6] * x_[i] + n[7] * y_[i] + n[8] * z_[i];
-      const float d3 = n[9] * x_[i] + n[10] * y_[i] + n[11] * z_[i];
-      if (std::min(std::min(d0, d1), std::min(d2, d3)) > 0.0f) sum += share_[i];
-    }
-    for (float value : partial) sum += value;
-    return static_cast<double>(sum);
+    return static_cast<double>(sum.sum());
   }
 
  private:
-  std::vector<float> x_, y_, z_, share_;
+  static constexpr int kLanes = 8;
+  Eigen::ArrayXf x_, y_, z_, share_;
 };
 
 }  // namespace
@@ -292,11 +280,11 @@ std::vector<double> LobeIntegrals(const View& view, const std::vector<Quad>& qua
   for (std::size_t i = 0; i < both.size(); ++i)
     residual[i] =
         both.density[i] - magnitude * LtcDensity(control.m, {both.x[i], both.y[i], both.z[i]}, 1.0, nullptr);
-  const MaskedIntegral masked(both, residual);
+  const MaskedSum masked(both, residual);
   std::vector<double> integrals;
   integrals.reserve(quads.size());
   for (const Quad& quad : quads)
-    integrals.push_back(magnitude * UpperQuadIntegral(control.m, quad) + masked.Sum(quad));
+    integrals.push_back(magnitude * UpperQuadIntegral(control.m, quad) + masked(quad));
   return integrals;
 }
 
