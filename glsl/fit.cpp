@@ -146,6 +146,8 @@ void WriteExr(const std::filesystem::path& file, int size, int channels, const f
   part.replace_extension(".part.exr");
   OIIO::ImageSpec spec(size, size, channels, OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime",
+                 "");  // else the writer adds the time of day: the same numbers must give the same bytes
   const auto output = OIIO::ImageOutput::create(part.string());
   if (!output || !output->open(part.string(), spec) || !output->write_image(OIIO::TypeDesc::FLOAT, values) ||
       !output->close())

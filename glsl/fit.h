@@ -6,6 +6,9 @@
 // in [0, 1] is looked up at (x·(size − 1) + ½)/size. The local frame is T1 = the view direction's unit
 // projection on the surface, T2 = N × T1, N.
 //
+// The column of roughness 0 is fitted as any other, at alpha = 1e-4: m' is diag(c, 1, 2 alpha c) there to
+// 1e-4.
+//
 // ltc_ggx_polygon.exr, ltc_ggx_cosine.exr (ours)
 //   x = √((1 − cos θ)/(1 − cos 89°)), clamped to 1. The channels are the mirror-frame terms m' of
 //     M⁻¹ = [[m0, 0, m2], [0, 1, 0], [m1, 0, m3]] (rows), from local directions to cosine space:
