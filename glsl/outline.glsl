@@ -3,9 +3,26 @@
 // factor by Lambert's contour integral. Frame: the shading normal is z. The same mathematics as compare/closed_forms.cpp.
 #include "polar_rule.glsl"
 
+// The elliptic cone of directions that a disk or a sphere covers, as in compare/closed_forms.h: axis_1 is the wider one.
+struct Cone {
+  vec3 axis_1;
+  vec3 axis_2;
+  vec3 axis_3;
+  float sin_1;
+  float cos_1;
+  float sin_2;
+  float cos_2;
+};
+
+// Chords between corners, then quarters of a cone's outline from angle begin to end.
 struct Outline {
-  Arc arcs[6];
-  int count;  // 0: nothing is visible
+  vec3 corners[6];  // unit; chord i runs from corner i to the next
+  int corner_count;
+  int chord_count;  // as many as corners, or 1 where a cone is cut by the horizon
+  Cone cone;
+  float begin;
+  float end;
+  int arc_count;  // chords and quarters; 0: nothing is visible
   float form_factor;
   bool mirror_inside;  // whether the light covers the mirror direction
 };
@@ -30,16 +47,16 @@ float Angle(float y, float x) {
   return y < 0.0 ? -a : a;
 }
 
-// Adds the great-circle arc from p to q (any lengths), and its share of the form factor.
-void AddGreatCircle(vec3 p, vec3 q, vec3 mirror, INOUT(Outline) outline) {
-  vec3 a = p * inversesqrt(max(dot(p, p), 1e-30));
-  vec3 b = q * inversesqrt(max(dot(q, q), 1e-30));
-  vec3 middle = a + b;
-  vec3 along = b - a;
-  float cosine = length(middle);
-  float sine = length(along);
-  if (cosine > 1e-7 && sine > 1e-7) {
-    Arc arc;
+// Arc i of the outline. A quarter of a cone is measured from the nearer end of its long axis.
+Arc OutlineArc(Outline outline, int i) {
+  Arc arc;
+  if (i < outline.chord_count) {
+    vec3 p = outline.corners[i];
+    vec3 q = outline.corners[i + 1 < outline.corner_count ? i + 1 : 0];
+    vec3 middle = p + q;
+    vec3 along = q - p;
+    float cosine = sqrt(max(dot(middle, middle), 1e-14));
+    float sine = sqrt(max(dot(along, along), 1e-14));
     arc.axis_1 = middle / cosine;
     arc.axis_2 = along / sine;
     arc.axis_3 = vec3(0.0);
@@ -49,12 +66,24 @@ void AddGreatCircle(vec3 p, vec3 q, vec3 mirror, INOUT(Outline) outline) {
     arc.cos_2 = 0.0;
     arc.t1 = sine / (2.0 + cosine);
     arc.t0 = -arc.t1;
-    outline.arcs[outline.count] = arc;
-    outline.count = outline.count + 1;
-    vec3 plane = cross(arc.axis_1, arc.axis_2);
-    outline.form_factor += PositiveAngle(sine, cosine) * plane.z / kPi;
-    outline.mirror_inside = outline.mirror_inside && dot(plane, mirror) > 0.0;
+  } else {
+    float quarter = 0.5 * kPi;
+    float low = floor(outline.begin / quarter) + float(i - outline.chord_count);
+    float zero = floor(0.5 * (low + 1.0));  // half turns from axis_1
+    float sense = 1.0 - 2.0 * (zero - 2.0 * floor(0.5 * zero));
+    float h0 = 0.5 * (max(outline.begin, low * quarter) - zero * kPi);
+    float h1 = 0.5 * (min(outline.end, (low + 1.0) * quarter) - zero * kPi);
+    arc.axis_1 = outline.cone.axis_1 * sense;
+    arc.axis_2 = outline.cone.axis_2 * sense;
+    arc.axis_3 = outline.cone.axis_3;
+    arc.sin_1 = outline.cone.sin_1;
+    arc.sin_2 = outline.cone.sin_2;
+    arc.cos_1 = outline.cone.cos_1;
+    arc.cos_2 = outline.cone.cos_2;
+    arc.t0 = sin(h0) / cos(h0);
+    arc.t1 = sin(h1) / cos(h1);
   }
+  return arc;
 }
 
 // center, half_a, half_b: m, local; the light faces the point. Corners are counter-clockwise seen from outside.
@@ -81,21 +110,28 @@ void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(
   }
   if (count >= 3) {
     for (int i = 0; i < count; ++i) {
-      AddGreatCircle(corners[i], corners[i + 1 < count ? i + 1 : 0], mirror, outline);
+      vec3 p = corners[i];
+      outline.corners[i] = p * inversesqrt(max(dot(p, p), 1e-30));
     }
+    outline.corner_count = count;
+    outline.chord_count = count;
+    outline.arc_count = count;
+    outline.mirror_inside = true;
+    float sum = 0.0;
+    for (int i = 0; i < count; ++i) {
+      vec3 p = outline.corners[i];
+      vec3 q = outline.corners[i + 1 < count ? i + 1 : 0];
+      vec3 middle = p + q;
+      vec3 along = q - p;
+      float cosine = length(middle);
+      float sine = length(along);
+      vec3 plane = cross(middle, along);  // its length is cosine · sine
+      sum += PositiveAngle(sine, cosine) * plane.z / max(cosine * sine, 1e-30);
+      outline.mirror_inside = outline.mirror_inside && dot(plane, mirror) > 0.0;
+    }
+    outline.form_factor = sum / kPi;
   }
 }
-
-// The elliptic cone of directions that a disk or a sphere covers, as in compare/closed_forms.h: axis_1 is the wider one.
-struct Cone {
-  vec3 axis_1;
-  vec3 axis_2;
-  vec3 axis_3;
-  float sin_1;
-  float cos_1;
-  float sin_2;
-  float cos_2;
-};
 
 vec3 AnyPerpendicular(vec3 v) {
   vec3 axis = abs(v.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
@@ -208,8 +244,8 @@ void ConeOutline(Cone cone, vec3 mirror, INOUT(Outline) outline) {
       end = end <= begin ? end + 2.0 * kPi : end;
       vec3 p = ConeDirection(cone, cos(end), sin(end));
       vec3 q = ConeDirection(cone, cos(begin), sin(begin));
-      p = vec3(p.x, p.y, 0.0);
-      q = vec3(q.x, q.y, 0.0);
+      p = vec3(p.x, p.y, 0.0) * inversesqrt(p.x * p.x + p.y * p.y);
+      q = vec3(q.x, q.y, 0.0) * inversesqrt(q.x * q.x + q.y * q.y);
       float chord = Angle(p.x * q.y - p.y * q.x, p.x * q.x + p.y * q.y);
       float tan2 = (cone.sin_1 * cone.cos_2 - cone.sin_2 * cone.cos_1) * (cone.sin_1 * cone.cos_2 + cone.sin_2 * cone.cos_1);
       float tangents = sqrt(max(tan2, 0.0)) / (cone.cos_1 * cone.cos_2);  // √(tan_1² − tan_2²)
@@ -218,38 +254,20 @@ void ConeOutline(Cone cone, vec3 mirror, INOUT(Outline) outline) {
       float i1 = cone.sin_2 / cone.cos_2 * cone.cos_1 * cone.cos_1 * (AtanhOver(kappa, end_sin) - AtanhOver(kappa, begin_sin));
       float i2 = cone.sin_1 / cone.cos_1 * cone.cos_2 * cone.cos_2 * (AtanOver(j, begin_cos) - AtanOver(j, end_cos));
       float arc = -cone.axis_1.z * i1 - cone.axis_2.z * i2 + cone.axis_3.z * cone.sin_1 * cone.sin_2 * (end - begin);
-      AddGreatCircle(p, q, mirror, outline);  // its share of the form factor is in the sum that follows
+      outline.corners[0] = p;
+      outline.corners[1] = q;
+      outline.corner_count = 2;
+      outline.chord_count = 1;
       outline.form_factor = (arc + chord) / (2.0 * kPi);
     } else {
       outline.form_factor = cone.axis_3.z * cone.sin_1 * cone.sin_2;
     }
-    // Arcs cut at the ends of the axes; at most five quarters, the first and the last may be short.
+    // Quarters between the ends of the axes; the first and the last may be short.
     float quarter = 0.5 * kPi;
-    float first = floor(begin / quarter);
-    for (int i = 0; i < 5; ++i) {
-      float low = first + float(i);
-      float from = max(begin, low * quarter);
-      float to = min(end, (low + 1.0) * quarter);
-      if (to - from > 1e-6) {
-        float zero = floor(0.5 * (low + 1.0));  // half turns from axis_1
-        float even = zero - 2.0 * floor(0.5 * zero);
-        float sense = 1.0 - 2.0 * even;
-        Arc arc;
-        arc.axis_1 = cone.axis_1 * sense;
-        arc.axis_2 = cone.axis_2 * sense;
-        arc.axis_3 = cone.axis_3;
-        arc.sin_1 = cone.sin_1;
-        arc.sin_2 = cone.sin_2;
-        arc.cos_1 = cone.cos_1;
-        arc.cos_2 = cone.cos_2;
-        float h0 = 0.5 * (from - zero * kPi);
-        float h1 = 0.5 * (to - zero * kPi);
-        arc.t0 = sin(h0) / cos(h0);
-        arc.t1 = sin(h1) / cos(h1);
-        outline.arcs[outline.count] = arc;
-        outline.count = outline.count + 1;
-      }
-    }
+    outline.cone = cone;
+    outline.begin = begin;
+    outline.end = end;
+    outline.arc_count = outline.chord_count + int(ceil(end / quarter) - floor(begin / quarter));
     float m1 = dot(mirror, cone.axis_1) * cone.cos_1 / cone.sin_1;
     float m2 = dot(mirror, cone.axis_2) * cone.cos_2 / cone.sin_2;
     float m3 = dot(mirror, cone.axis_3);

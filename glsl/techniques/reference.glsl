@@ -21,6 +21,9 @@ choices = [
 
 // Shadowing changes over n·l of the order of α: a panel of its own where that is less than 1/kThinLayer of the way.
 const float kThinLayer = 6.0;
+// Half the nodes do where a ray's y or a panel's range of it is shorter: Gauss's error falls with the stretch's 2N-th power.
+const float kShortReach = 0.15;
+const float kShortPanel = 0.3;
 
 // The arc's point nearest to `to`: (t, the foot on the tangent there as an offset in t, speed²), and its slope.
 vec3 NearestOnArc(Arc arc, LobeView view, vec2 to, out vec2 nearest) {
@@ -88,7 +91,9 @@ vec2 RayIntegral(LobeView view, vec2 center, vec2 direction, float origin, float
   float alpha2 = view.alpha * view.alpha;
   float center2 = dot(center, center);
   float along = dot(center, direction);
-  for (int i = 0; i < RAY_NODES; ++i) {
+  int first = reach < kShortReach ? 0 : FEW_RAY_NODES;
+  int last = reach < kShortReach ? FEW_RAY_NODES : FEW_RAY_NODES + RAY_NODES;
+  for (int i = first; i < last; ++i) {
     float p;
     float derivative;
     RayMap(reach * kRayNodes[i].x, p, derivative);
@@ -109,7 +114,9 @@ vec2 PanelIntegral(Arc arc, LobeView view, vec2 center, float scale, float ring,
   float y1 = RayMapInverse(abs(x1));
   y0 = x0 < 0.0 ? -y0 : y0;
   y1 = x1 < 0.0 ? -y1 : y1;
-  for (int i = 0; i < NODES; ++i) {
+  int first = y1 - y0 < kShortPanel ? 0 : FEW_NODES;
+  int last = y1 - y0 < kShortPanel ? FEW_NODES : FEW_NODES + NODES;
+  for (int i = first; i < last; ++i) {
     float p;
     float dp;
     RayMap(mix(y0, y1, kNodes[i].x), p, dp);
@@ -122,15 +129,18 @@ vec2 PanelIntegral(Arc arc, LobeView view, vec2 center, float scale, float ring,
     vec2 direction = offset * inv;
     float span = length2 * inv - ring;
     float turn = (direction.x * derivative.y - direction.y * derivative.x) * inv * (width * dp * (y1 - y0) * kNodes[i].y);
-    vec2 ray = vec2(0.0);
     float layer = LayerLength(view, slope, direction);
-    if (layer * kThinLayer < span) {
-      float part = min(sqrt(layer * span), 0.5 * span);
-      ray += RayIntegral(view, center, direction, ring + span, -layer, RayMapInverse(part / layer)) * -1.0;
-      span -= part;
+    bool layered = layer * kThinLayer < span;
+    float part = layered ? min(sqrt(layer * span), 0.5 * span) : 0.0;
+    vec2 ray = vec2(0.0);
+    // One loop, so that the ray's text stands once in the compiled shader: the layer, seen from the far end, then the rest.
+    for (int k = layered ? 0 : 1; k < 2; ++k) {
+      float stretch = k == 0 ? part : span - part;
+      float size = k == 0 ? layer : scale;
+      float sense = k == 0 || stretch < 0.0 ? -1.0 : 1.0;
+      vec2 integral = RayIntegral(view, center, direction, k == 0 ? ring + span : ring, sense * size, RayMapInverse(abs(stretch) / size));
+      ray += k == 0 ? -integral : integral;
     }
-    float size = span < 0.0 ? -scale : scale;
-    ray += RayIntegral(view, center, direction, ring, size, RayMapInverse(abs(span) / scale));
     sum += ray * turn;
   }
   return sum;
@@ -142,75 +152,81 @@ float CrowdedEnd(float end, float size, float foot, float width, float range) {
   return size * kThinLayer < min(spacing, range) ? min(sqrt(size * spacing), 0.5 * range) : 0.0;
 }
 
+// Whether a ray from the center to slope s passes close by 0, over the lobe's peak.
+bool OverPeak(vec2 center, vec2 slope) {
+  vec2 ray = slope - center;
+  float length2 = dot(ray, ray);
+  float back = -dot(ray, center);
+  return back > 0.0 && back < length2 && back * back > 0.75 * dot(center, center) * length2;
+}
+
 // ∫ D G2 / (4 cosθ_v) dω over the outlined region, with Fresnel 1 and with Schlick's weight.
 vec2 SpecularIntegrals(Outline outline, LobeView view) {
   vec2 center = vec2(0.0);
+  vec2 origin = vec2(0.0);
+  float least = 1e30;
   float ring = 0.0;
-  if (!outline.mirror_inside) {
-    float least = 1e30;
-    for (int i = 0; i < outline.count; ++i) {
-      vec2 slope;
-      NearestOnArc(outline.arcs[i], view, vec2(0.0), slope);
-      if (dot(slope, slope) < least) {
-        least = dot(slope, slope);
-        center = slope;
-      }
+  float scale = view.alpha;
+  float blur = view.alpha;
+  vec2 sum = vec2(0.0);
+  // Pass 0 looks for the outline's nearest point to 0, pass 1 whether rays from there are good, pass 2 integrates: one loop,
+  // so that the search's text stands once in the compiled shader.
+  bool over_peak = false;
+  for (int pass = outline.mirror_inside ? 2 : 0; pass < 3; ++pass) {
+    if (pass == 1) {
+      center = origin;
+      scale = sqrt(view.alpha * view.alpha + dot(center, center));
+      blur = scale;
     }
-  }
-  float center2 = dot(center, center);
-  float scale = sqrt(view.alpha * view.alpha + center2);
-  float blur = scale;
-  // Where rays to the far side would pass close by 0, over the lobe's peak, radial rays from a ring serve better.
-  if (center2 > 0.25 * view.alpha * view.alpha) {
-    bool over_peak = false;
-    for (int i = 0; i < outline.count; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        vec2 slope;
-        vec2 derivative;
-        ArcSlope(outline.arcs[i], view, mix(outline.arcs[i].t0, outline.arcs[i].t1, 0.5 * float(k)), slope, derivative);
-        vec2 ray = slope - center;
-        float length2 = dot(ray, ray);
-        float back = -dot(ray, center);
-        over_peak = over_peak || (back > 0.0 && back < length2 && back * back > 0.75 * center2 * length2);
-      }
-    }
-    if (over_peak) {
-      ring = sqrt(center2);
+    if (pass == 2 && over_peak) {
+      // Radial rays from the circle about 0 that touches the outline.
+      ring = length(center);
       center = vec2(0.0);
       blur = 0.0;
     }
-  }
-  vec2 sum = vec2(0.0);
-  for (int i = 0; i < outline.count; ++i) {
-    Arc arc = outline.arcs[i];
-    vec2 slope;
-    vec3 nearest = NearestOnArc(arc, view, center, slope);
-    vec2 offset = slope - center;
-    float across = max(dot(offset, offset) - nearest.y * nearest.y * nearest.z, 0.0);
-    float width = clamp(sqrt((blur * blur + across) / nearest.z), 1e-7, 8.0);
-    float foot = nearest.x + nearest.y;
-    float height;
-    float rise;
-    ArcHeight(arc, arc.t0, height, rise);
-    float layer_0 = (max(height, 0.0) + LayerHeight(view)) / max(rise, 1e-9);
-    ArcHeight(arc, arc.t1, height, rise);
-    float layer_1 = (max(height, 0.0) + LayerHeight(view)) / max(-rise, 1e-9);
-    if (arc.cos_2 > 0.0) {
-      float tip = max(0.5 * arc.cos_1 / arc.cos_2, 1e-6);
-      layer_0 = abs(arc.t0) < 1e-6 ? min(layer_0, tip) : layer_0;
-      layer_1 = abs(arc.t1) < 1e-6 ? min(layer_1, tip) : layer_1;
-    }
-    float range = arc.t1 - arc.t0;
-    float cut_0 = arc.t0 + CrowdedEnd(arc.t0, layer_0, foot, width, range);
-    float cut_1 = arc.t1 - CrowdedEnd(arc.t1, layer_1, foot, width, range);
-    // Up to three panels in one loop, so that the rays' text stands once in the compiled shader.
-    for (int k = 0; k < 3; ++k) {
-      float t0 = k == 0 ? cut_0 : (k == 1 ? arc.t0 : cut_1);
-      float t1 = k == 0 ? cut_1 : (k == 1 ? cut_0 : arc.t1);
-      float t_center = k == 0 ? foot : (k == 1 ? arc.t0 : arc.t1);
-      float size = k == 0 ? width : (k == 1 ? layer_0 : layer_1);
-      if (t1 > t0) {
-        sum += PanelIntegral(arc, view, center, scale, ring, t0, t1, t_center, size);
+    for (int i = 0; i < outline.arc_count; ++i) {
+      Arc arc = OutlineArc(outline, i);
+      vec2 slope;
+      if (pass == 1) {
+        vec2 derivative;
+        ArcSlope(arc, view, arc.t1, slope, derivative);
+        over_peak = over_peak || (scale > 1.118 * view.alpha && OverPeak(center, slope));  // |center| > α/2
+        continue;
+      }
+      vec3 nearest = NearestOnArc(arc, view, center, slope);
+      if (pass == 0) {
+        if (dot(slope, slope) < least) {
+          least = dot(slope, slope);
+          origin = slope;
+        }
+        continue;
+      }
+      vec2 offset = slope - center;
+      float across = max(dot(offset, offset) - nearest.y * nearest.y * nearest.z, 0.0);
+      float width = clamp(sqrt((blur * blur + across) / nearest.z), 1e-7, 8.0);
+      float foot = nearest.x + nearest.y;
+      float height;
+      float rise;
+      ArcHeight(arc, arc.t0, height, rise);
+      float layer_0 = (max(height, 0.0) + LayerHeight(view)) / max(rise, 1e-9);
+      ArcHeight(arc, arc.t1, height, rise);
+      float layer_1 = (max(height, 0.0) + LayerHeight(view)) / max(-rise, 1e-9);
+      if (arc.cos_2 > 0.0) {
+        float tip = max(0.5 * arc.cos_1 / arc.cos_2, 1e-6);
+        layer_0 = abs(arc.t0) < 1e-6 ? min(layer_0, tip) : layer_0;
+        layer_1 = abs(arc.t1) < 1e-6 ? min(layer_1, tip) : layer_1;
+      }
+      float range = arc.t1 - arc.t0;
+      float cut_0 = arc.t0 + CrowdedEnd(arc.t0, layer_0, foot, width, range);
+      float cut_1 = arc.t1 - CrowdedEnd(arc.t1, layer_1, foot, width, range);
+      for (int k = 0; k < 3; ++k) {
+        float t0 = k == 0 ? cut_0 : (k == 1 ? arc.t0 : cut_1);
+        float t1 = k == 0 ? cut_1 : (k == 1 ? cut_0 : arc.t1);
+        float t_center = k == 0 ? foot : (k == 1 ? arc.t0 : arc.t1);
+        float size = k == 0 ? width : (k == 1 ? layer_0 : layer_1);
+        if (t1 > t0) {
+          sum += PanelIntegral(arc, view, center, scale, ring, t0, t1, t_center, size);
+        }
       }
     }
   }
@@ -234,7 +250,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   vec3 center = vec3(dot(x_axis, to_center), dot(y_axis, to_center), dot(surface.normal, to_center));
 
   Outline outline;
-  outline.count = 0;
+  outline.corner_count = 0;
+  outline.chord_count = 0;
+  outline.arc_count = 0;
   outline.form_factor = 0.0;
   outline.mirror_inside = true;
   if (light.shape == SHAPE_RECTANGLE) {
