@@ -1,7 +1,7 @@
 /*---
 summary = "One representative point for the diffuse lobe, one at the middle of the light's part in the lobe's cone for the specular"
 citation = "Drobot 2014"
-author_note = "point=halfway, extent=area, cone=threshold are Drobot's for rectangle and disk, his sphere diffuse is the closed form; that his shipped point is then brought onto the light is our reading (without it a small light's place would not matter); ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, the bounds 2π and the cone's own solid angle, extent=solid_angle, cone=energy"
+author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with the light's solid angle, as Lagarde & de Rousiers 2014 read it too, because only so does his stated error come out (eq. 1.16 by the word, its dA the whole light's, is extent=area and several times too bright near a light); the shipped point=halfway brought onto the light, without which a small light's place would not matter; cone=threshold, his cone's rule carried to GGX; his sphere's diffuse in closed form. Ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, no form factor above 1, no specular solid angle above the cone's own, cone=energy. He shipped rectangles with a Phong lobe only, because of artefacts with Blinn-Phong"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
@@ -20,8 +20,8 @@ choices = [
 name = "extent"
 summary = "the light's extent in the diffuse integral"
 choices = [
-  ["solid_angle", "the shape's solid angle (ours)"],
-  ["area", "area · cosine / distance² at the point (eq. 1.16)"],
+  ["solid_angle", "the light's solid angle (eq. 1.15)"],
+  ["area", "the light's area · cosine / distance² at the point (eq. 1.16, its dA the whole area)"],
 ]
 
 [[option]]
@@ -34,7 +34,7 @@ choices = [
 
 [published]
 point = "halfway"
-extent = "area"
+extent = "solid_angle"
 cone = "threshold"
 ---*/
 #include "brdf.glsl"

@@ -1,7 +1,7 @@
 /*---
 summary = "The light's spherical cap intersected with the cap of open sky, the hemisphere where nothing is baked"
 citation = "Oat 2006"
-author_note = "overlap=smoothstep, centroid=average are Oat's, for diffuse light from spheres; ours: the exact overlap and its centroid, rectangle and disk as the cap of equal solid angle about the direction to their centre, and the specular lobe as a GGX cone intersected with the light's cap, as bright in total as the lobe"
+author_note = "overlap=smoothstep, centroid=average are Oat's, for diffuse light from spheres; the exact overlap is the form of Tovchigrechko & Vakser 2001 that he shows and replaces, with a sign of its print corrected; ours: the overlap's centroid, rectangle and disk as the cap of equal solid angle about the direction to their centre, and the specular lobe as a GGX cone intersected with the light's cap, as bright in total as the lobe"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
@@ -12,8 +12,8 @@ exact = ["lambert_sphere"]
 name = "overlap"
 summary = "the area that two caps share"
 choices = [
-  ["exact", "by spherical geometry"],
-  ["smoothstep", "the smaller cap times a smoothstep between touching and containing"],
+  ["exact", "by spherical geometry (the form he replaces)"],
+  ["smoothstep", "the smaller cap times a smoothstep between touching and containing (his)"],
 ]
 
 [[option]]
@@ -21,7 +21,7 @@ name = "centroid"
 summary = "the direction at which Lambert's cosine is taken"
 choices = [
   ["overlap", "the centroid of the shared part (ours)"],
-  ["average", "halfway between the light's and the aperture's axis"],
+  ["average", "halfway between the light's and the aperture's axis (his)"],
 ]
 
 [published]
