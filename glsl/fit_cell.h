@@ -34,7 +34,7 @@ LossQuads MakeLossQuads(int count);
 struct PolygonFit {
   int nodes = 24;             // per axis of the quadrature, more at grazing views
   double lobe_share = 0.1;    // of the loss: the quads scaled to the lobe
-  double leak_penalty = 0.3;  // × b²
+  double leak_penalty = 2.0;  // × b²
   bool with_cosine = false;
   double cosine_penalty = 5e-3;  // × w²
 };
