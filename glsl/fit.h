@@ -7,7 +7,7 @@
 // projection on the surface, T2 = N × T1, N.
 //
 // The column of roughness 0 is fitted as any other, at alpha = 1e-4: m' is diag(c, 1, 2 alpha c) there to
-// 1e-4.
+// 2e-4.
 //
 // ltc_ggx_polygon.exr, ltc_ggx_cosine.exr (ours)
 //   x = √((1 − cos θ)/(1 − cos 89°)), clamped to 1. The channels are the mirror-frame terms m' of

@@ -9,7 +9,7 @@
 namespace arealab::fit {
 namespace {
 
-constexpr int kAlbedoNodes = 48;       // albedo to 1e-7 (measured), 1e-8 over most of the table
+constexpr int kAlbedoNodes = 48;       // relative error of the albedo at most 4e-8 (measured, against 192)
 constexpr int kPublishedSamples = 32;  // per axis, ltc_code's
 
 // Four terms of P and, where it is free, the weight of the cosine lobe.
@@ -344,8 +344,7 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
   };
   const bool free = previous != nullptr;
   const std::array<bool, 5> active{free, free, free, true, settings.with_cosine};
-  // One valley (twelve random starts out of twelve met in the same optimum, where tried): the better start is
-  // enough.
+  // One valley: where tried, at 80° and 88°, ten to twelve of twelve random starts met in the same optimum.
   Unknowns best = density.p;
   if (previous) {
     Unknowns other = Unknowns::Zero();
