@@ -1,29 +1,62 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
+
 #include "app/commands.h"
 #include "app/progress.h"
 #include "glsl/fit.h"
+#include "scenes/error.h"
 
 namespace arealab {
+namespace {
+
+struct FitArguments {
+  FitOptions options;
+  std::string out;
+  std::string quality;
+};
+
+void PrintQuality(const std::filesystem::path& folder) {
+  const std::map<std::string, FitKind> kinds = {{"ltc_ggx_polygon", FitKind::kPolygon},
+                                                {"ltc_ggx_cosine", FitKind::kCosine},
+                                                {"ltc_ggx_l3", FitKind::kPublished}};
+  for (const auto& [name, kind] : kinds) {
+    FitQuality quality;
+    {
+      Progress progress;
+      quality = MeasureFit(ReadLtcTables(folder, kind), {}, [&](double fraction) { progress.Show(name, fraction); });
+    }
+    fmt::print("{}\n\n{}\n", name, QualityTable(quality));
+  }
+}
+
+void RunFit(const FitArguments& arguments) {
+  if (arguments.out.empty() == arguments.quality.empty()) {
+    throw InputError("arealab fit takes either --out or --quality; expected one of them");
+  }
+  if (!arguments.quality.empty()) {
+    PrintQuality(arguments.quality);
+    return;
+  }
+  {
+    Progress progress;
+    FitTables(arguments.out, arguments.options, [&](double fraction) { progress.Show("fit", fraction); });
+  }
+  fmt::print("tables: {}\n", arguments.out);
+}
+
+}  // namespace
 
 void AddFit(CLI::App& app, int& /*status*/) {
-  struct Arguments {
-    FitOptions options;
-    std::string out;
-  };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<FitArguments>();
   CLI::App* command = app.add_subcommand("fit", "Fit the LTC tables; `arealab fit --out glsl/tables` makes the built-in ones");
-  command->add_option("--out", arguments->out, "folder of the tables")->required();
+  command->add_option("--out", arguments->out, "folder to write the tables to");
+  command->add_option("--quality", arguments->quality, "folder of tables to measure, on random rectangles, instead");
   command->add_option("--table", arguments->options.tables, "one table only; may be given several times (default: all)")
       ->check(CLI::IsMember(TableNames()));
   command->add_option("--table-size", arguments->options.size, "nodes per axis")->capture_default_str()->check(CLI::Range(2, 512));
-  command->callback([arguments] {
-    {
-      Progress progress;
-      FitTables(arguments->out, arguments->options, [&](double fraction) { progress.Show("fit", fraction); });
-    }
-    fmt::print("tables: {}\n", arguments->out);
-  });
+  command->callback([arguments] { RunFit(*arguments); });
 }
 
 }  // namespace arealab
