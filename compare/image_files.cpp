@@ -75,7 +75,9 @@ float HalfImage::Value(int plane, std::size_t i) const {
   return std::ldexp(HalfToFloat(planes[static_cast<std::size_t>(plane)][i]), exponent);
 }
 
-HalfImage ToHalf(const RadianceImage& image) {
+namespace {
+
+int ChooseExponent(const RadianceImage& image) {
   float largest = 0.0f;
   for (const auto* lobe : {&image.diffuse, &image.specular}) {
     for (const glm::vec3& v : *lobe) {
@@ -84,25 +86,65 @@ HalfImage ToHalf(const RadianceImage& image) {
       }
     }
   }
+  const bool fits = largest == 0.0f || (largest >= kSmallestPeak && largest <= kLargestHalf);
+  return fits ? 0 : std::ilogb(largest) - 14;
+}
+
+// The distance between neighbouring halves at v.
+float Step(float v) { return std::ldexp(1.0f, std::max(v == 0.0f ? -14 : std::ilogb(v), -14) - 10); }
+
+std::uint16_t HalfBits(float v) {
+  // A −0 would cost the coder a jump of 32768 for nothing.
+  return v == 0.0f ? std::uint16_t{0} : half(v).bits();
+}
+
+// `truth` and `stored` are both given or both null; all values are already divided by 2^exponent.
+std::uint16_t Round(float v, float coarsest, const float* truth, float stored) {
+  if (!std::isfinite(v) || v == 0.0f) return HalfBits(v);
+  const float step = std::max(Step(v), coarsest);
+  float rounded = std::nearbyint(v / step) * step;
+  if (truth != nullptr && std::isfinite(*truth) && std::max(Step(*truth), coarsest) == step) {
+    rounded = stored + std::nearbyint((v - *truth) / step) * step;
+  }
+  return HalfBits(std::clamp(rounded, -kLargestHalf, kLargestHalf));
+}
+
+HalfImage RoundImage(const RadianceImage& image, float coarse_below, const RadianceImage* truth, const HalfImage* stored) {
   HalfImage result;
   result.width = image.width;
   result.height = image.height;
-  if (largest > 0.0f && (largest < kSmallestPeak || largest > kLargestHalf)) {
-    result.exponent = std::ilogb(largest) - 14;
-  }
+  result.exponent = ChooseExponent(image);
+  if (stored != nullptr && (stored->exponent != result.exponent || truth->size() != image.size())) stored = nullptr;
   const float scale = std::ldexp(1.0f, -result.exponent);
+  const float coarsest = coarse_below > 0.0f ? Step(coarse_below * scale) : 0.0f;
   for (std::size_t plane = 0; plane < 6; ++plane) {
     const auto& lobe = plane < 3 ? image.diffuse : image.specular;
     const int channel = static_cast<int>(plane % 3);
     auto& bits = result.planes[plane];
     bits.resize(image.size());
     for (std::size_t i = 0; i < bits.size(); ++i) {
-      const float v = lobe[i][channel];
-      // A −0 would cost the coder a jump of 32768 for nothing.
-      bits[i] = v == 0.0f ? std::uint16_t{0} : half(v * scale).bits();
+      const float v = lobe[i][channel] * scale;
+      if (stored == nullptr) {
+        bits[i] = Round(v, coarsest, nullptr, 0.0f);
+      } else {
+        const float exact = (plane < 3 ? truth->diffuse : truth->specular)[i][channel] * scale;
+        bits[i] = Round(v, coarsest, &exact, HalfToFloat(stored->planes[plane][i]));
+      }
     }
   }
   return result;
+}
+
+}  // namespace
+
+HalfImage ToHalf(const RadianceImage& image) { return RoundImage(image, 0.0f, nullptr, nullptr); }
+
+HalfImage ToHalf(const RadianceImage& image, float coarse_below) {
+  return RoundImage(image, coarse_below, nullptr, nullptr);
+}
+
+HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceImage& truth, const HalfImage& stored) {
+  return RoundImage(image, coarse_below, &truth, &stored);
 }
 
 RadianceImage FromHalf(const HalfImage& image) {

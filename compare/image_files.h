@@ -25,6 +25,13 @@ struct HalfImage {
 };
 
 HalfImage ToHalf(const RadianceImage& image);
+
+// For files that are to stay small: values below `coarse_below` (in the images' unit) are kept to the step that halves
+// have there, not to a finer one; and each value is rounded by its difference from the truth, of which `truth` is exact and
+// `stored` as it was stored, so that a − b on a page is right to half a step and an exact technique differs nowhere.
+// Hence |stored − exact| is at most one step. Values of other magnitude than the truth's are rounded by themselves.
+HalfImage ToHalf(const RadianceImage& image, float coarse_below);
+HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceImage& truth, const HalfImage& stored);
 RadianceImage FromHalf(const HalfImage& image);
 
 // Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray), half where the exponent is 0, else float with

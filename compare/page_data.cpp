@@ -55,21 +55,21 @@ std::vector<std::uint8_t> Deflate(const std::vector<std::uint8_t>& bytes) {
   return packed;
 }
 
-std::string Base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr char kAlphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = bytes.size() - i;
-    const unsigned group = static_cast<unsigned>(bytes[i] << 16) |
-                           static_cast<unsigned>((left > 1 ? bytes[i + 1] : 0) << 8) |
-                           static_cast<unsigned>(left > 2 ? bytes[i + 2] : 0);
-    text += kAlphabet[group >> 18];
-    text += kAlphabet[(group >> 12) & 63];
-    text += left > 1 ? kAlphabet[(group >> 6) & 63] : '=';
-    text += left > 2 ? kAlphabet[group & 63] : '=';
+// A script's string literal: every byte stands for itself but those that would end the literal or its line.
+std::string Literal(const std::vector<std::uint8_t>& bytes) {
+  std::string text = "\"";
+  text.reserve(bytes.size() + bytes.size() / 32);
+  for (std::uint8_t byte : bytes) {
+    switch (byte) {
+      case 0: text += "\\x00"; break;
+      case '\n': text += "\\n"; break;
+      case '\r': text += "\\r"; break;
+      case '"': text += "\\\""; break;
+      case '\\': text += "\\\\"; break;
+      default: text += static_cast<char>(byte);
+    }
   }
-  return text;
+  return text + "\"";
 }
 
 }  // namespace
@@ -91,38 +91,48 @@ std::string ScriptSafe(std::string json) {
   return safe;
 }
 
-std::string EncodePageImage(const std::string& key, const HalfImage& image) {
+std::string EncodePageImage(const std::string& key, const HalfImage& image, const HalfImage* truth) {
   const std::size_t width = static_cast<std::size_t>(image.width);
+  if (truth != nullptr && (truth->width != image.width || truth->height != image.height || truth->exponent != image.exponent)) {
+    truth = nullptr;
+  }
   std::vector<std::uint8_t> bytes;
   std::array<std::string, 6> modes;
   for (std::size_t lobe = 0; lobe < 2; ++lobe) {
     const Plane& green = image.planes[3 * lobe + 1];
     for (std::size_t channel : {1u, 0u, 2u}) {  // green first: the others may lean on it
-      const Plane& plane = image.planes[3 * lobe + channel];
-      std::string& mode = modes[3 * lobe + channel];
-      if (channel != 1 && plane == green) {
-        mode = "=g";
-        continue;
+      const std::size_t index = 3 * lobe + channel;
+      const Plane& plane = image.planes[index];
+      std::string& mode = modes[index];
+      const Plane* bases[2] = {channel == 1 ? nullptr : &green, truth == nullptr ? nullptr : &truth->planes[index]};
+      const char* const names[2] = {"g", "t"};
+      for (int b = 0; b < 2; ++b) {
+        if (mode.empty() && bases[b] != nullptr && *bases[b] == plane) mode = std::string("=") + names[b];
       }
-      Plane residual = Residual(plane, width);
+      if (!mode.empty()) continue;
       mode = "raw";
-      if (channel != 1) {
+      Plane best = Residual(plane, width);
+      std::uint64_t cost = Cost(best);
+      for (int b = 0; b < 2; ++b) {
+        if (bases[b] == nullptr) continue;
         Plane difference(plane.size());
-        for (std::size_t i = 0; i < plane.size(); ++i) difference[i] = Wrap(plane[i] - green[i]);
+        for (std::size_t i = 0; i < plane.size(); ++i) difference[i] = Wrap(plane[i] - (*bases[b])[i]);
         difference = Residual(difference, width);
-        if (Cost(difference) < Cost(residual)) {
-          residual = std::move(difference);
-          mode = "-g";
+        if (const std::uint64_t its_cost = Cost(difference); its_cost < cost) {
+          cost = its_cost;
+          best = std::move(difference);
+          mode = std::string("-") + names[b];
         }
       }
-      Append(residual, &bytes);
+      Append(best, &bytes);
     }
   }
   const nlohmann::ordered_json header = {
       {"width", image.width}, {"height", image.height}, {"exponent", image.exponent}, {"planes", modes}};
-  return fmt::format("arealabImage({},{},\"{}\");\n",
+  // \u escapes keep the key readable in any encoding.
+  return fmt::format("arealabImage({},{},{});\n",
                      ScriptSafe(nlohmann::json(key).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)),
-                     header.dump(), Base64(Deflate(bytes)));
+                     header.dump(), Literal(Deflate(bytes)));
 }
 
 }  // namespace arealab

@@ -128,9 +128,35 @@ std::string FileName(const std::string& name, std::set<std::string>* taken) {
   return unique;
 }
 
+// How a scene's values are rounded for its files; `truth` as it is stored, empty where there is none.
+struct Rounding {
+  float coarse_below = 0.0f;
+  HalfImage truth;
+};
+
+// Half floats are finer in the dark than any map shows: below 1/8 of the truth's mean luminance m their step at m/8 is
+// kept, an error of at most 2⁻¹⁴ m. Where the truth alone would still take more than 1.5 bytes a pixel on the page (fine
+// texture all over) the step is doubled until it does not, at most to 2⁻⁸ m: a folder of ten scenes and ten variants at
+// 512×512 stays below 60 MB.
+constexpr double kCoarseBelow = 1.0 / 8.0, kCoarsest = 4.0, kBytesPerPixel = 1.5;
+constexpr double kSmallFile = 65536.0;  // bytes; never worth it
+
+Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
+  Rounding rounding;
+  if (!scene.truth) return rounding;
+  for (double below = kCoarseBelow; below <= kCoarsest; below *= 2.0) {
+    rounding.coarse_below = static_cast<float>(below * mean_luminance);
+    rounding.truth = ToHalf(*scene.truth, rounding.coarse_below);
+    const double bytes = static_cast<double>(EncodePageImage({}, rounding.truth).size());
+    if (bytes <= std::max(kSmallFile, kBytesPerPixel * static_cast<double>(scene.truth->size()))) break;
+  }
+  return rounding;
+}
+
 // One picture's files.
 struct Job {
   const SceneResult* scene;
+  const Rounding* rounding;
   std::shared_ptr<const RadianceImage> image;
   std::string folder, stem;
   bool emission_only = false;
@@ -138,10 +164,24 @@ struct Job {
 
 void WriteImages(const Job& job, const fs::path& root) {
   const SceneResult& scene = *job.scene;
+  const Rounding& rounding = *job.rounding;
   const std::string key = job.folder + "/" + job.stem;
-  const HalfImage half = ToHalf(*job.image);
-  WriteText(root / "data" / job.folder / (job.stem + ".js"), EncodePageImage(key, half));
-  if (job.emission_only) return;
+  const fs::path script = root / "data" / job.folder / (job.stem + ".js");
+  if (job.emission_only) {
+    WriteText(script, EncodePageImage(key, ToHalf(*job.image)));
+    return;
+  }
+  HalfImage half;
+  if (job.image == scene.truth) {
+    half = rounding.truth;
+    WriteText(script, EncodePageImage(key, half));
+  } else if (scene.truth) {
+    half = ToHalf(*job.image, rounding.coarse_below, *scene.truth, rounding.truth);
+    WriteText(script, EncodePageImage(key, half, &rounding.truth));
+  } else {
+    half = ToHalf(*job.image);
+    WriteText(script, EncodePageImage(key, half));
+  }
   const fs::path images = root / "images" / job.folder;
   WriteExr(images / (job.stem + ".exr"), half);
   const std::span<const glm::vec3> emission =
@@ -230,6 +270,11 @@ void WriteReport(const Results& results, const fs::path& directory, const std::f
   Json page = ResultsObject(results);
   std::vector<Job> jobs;
   std::set<std::string> folders;
+  std::vector<Rounding> roundings(results.scenes.size());
+  tbb::parallel_for(std::size_t{0}, results.scenes.size(), [&](std::size_t s) {
+    const SceneResult& scene = results.scenes[s];
+    if (scene.truth) roundings[s] = ChooseRounding(scene, 100.0 * Floor(TotalRadiance(*scene.truth)));
+  });
   for (std::size_t s = 0; s < results.scenes.size(); ++s) {
     const SceneResult& scene = results.scenes[s];
     Json& scene_json = page["scenes"][s];
@@ -238,13 +283,13 @@ void WriteReport(const Results& results, const fs::path& directory, const std::f
     fs::create_directories(partial.path() / "images" / folder);
     fs::create_directories(partial.path() / "data" / folder);
     std::set<std::string> stems = {"truth", "emission"};
-    if (scene.truth) jobs.push_back({&scene, scene.truth, folder, "truth"});
+    if (scene.truth) jobs.push_back({&scene, &roundings[s], scene.truth, folder, "truth"});
     scene_json["truth"]["stem"] = scene.truth ? Json("truth") : Json(nullptr);
     for (std::size_t v = 0; v < scene.variants.size(); ++v) {
       const VariantResult& variant = scene.variants[v];
       const std::string stem = FileName(variant.name, &stems);
       scene_json["variants"][v]["stem"] = variant.image ? Json(stem) : Json(nullptr);
-      if (variant.image) jobs.push_back({&scene, variant.image, folder, stem});
+      if (variant.image) jobs.push_back({&scene, &roundings[s], variant.image, folder, stem});
     }
     scene_json["emission"] = scene.emission != nullptr;
     if (scene.emission) {
@@ -253,13 +298,15 @@ void WriteReport(const Results& results, const fs::path& directory, const std::f
       image->height = scene.height;
       image->diffuse = *scene.emission;
       image->specular.assign(scene.emission->size(), glm::vec3(0.0f));
-      jobs.push_back({&scene, image, folder, "emission", true});
+      jobs.push_back({&scene, &roundings[s], image, folder, "emission", true});
     }
     if (scene.truth) {
       const std::vector<glm::vec3> total = TotalRadiance(*scene.truth);
       const double floor = Floor(total);
       scene_json["floor"] = {{"total", floor}, {"diffuse", Floor(scene.truth->diffuse)}, {"specular", Floor(scene.truth->specular)}};
       scene_json["scale"] = MapScale(scene, total, floor);
+      // What the files' rounding may amount to where the picture is darker than that.
+      scene_json["coarse_below"] = static_cast<double>(roundings[s].coarse_below);
     } else {
       scene_json["floor"] = {{"total", 0.0}, {"diffuse", 0.0}, {"specular", 0.0}};
       scene_json["scale"] = 0.1;

@@ -122,12 +122,19 @@ const waiting = new Map();  // "folder/stem" → {resolve, reject}
 // Called by the files in data/; the format is described in AreaLab's compare/page_data.h.
 window.arealabImage = (key, header, data) => {
   const entry = waiting.get(key);
-  if (entry) decode(header, data).then(entry.resolve, entry.reject);
+  if (entry) decode(key, header, data).then(entry.resolve, entry.reject);
 };
 
-async function decode(header, data) {
-  const text = atob(data), packed = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
+// windows-1252 gives the bytes 0x80 to 0x9f characters of their own.
+const byteOf = new Map([...new TextDecoder("windows-1252").decode(Uint8Array.from({ length: 32 }, (_, i) => 128 + i))].map((c, i) => [c.charCodeAt(0), 128 + i]));
+
+async function decode(key, header, data) {
+  const packed = new Uint8Array(data.length);
+  for (let i = 0; i < data.length; ++i) {
+    const code = data.charCodeAt(i);
+    packed[i] = code < 128 || (code > 159 && code < 256) ? code : byteOf.get(code);
+  }
+  const truth = header.planes.some((mode) => mode[1] === "t") ? await load(key.split("/")[0], "truth") : null;
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   const { width, height, exponent } = header, size = width * height, planes = [];
@@ -135,7 +142,8 @@ async function decode(header, data) {
   for (let lobe = 0; lobe < 2; ++lobe) {
     for (const channel of [1, 0, 2]) {
       const mode = header.planes[3 * lobe + channel], green = planes[3 * lobe + 1];
-      if (mode === "=g") { planes[3 * lobe + channel] = green; continue; }
+      const base = mode[1] === "g" ? green : mode[1] === "t" ? truth.planes[3 * lobe + channel] : null;
+      if (mode[0] === "=") { planes[3 * lobe + channel] = base; continue; }
       const plane = new Uint16Array(size);
       for (let i = 0, y = 0; y < height; ++y) {
         for (let x = 0; x < width; ++x, ++i) {
@@ -145,7 +153,7 @@ async function decode(header, data) {
         }
       }
       at += 2 * size;
-      if (mode === "-g") for (let i = 0; i < size; ++i) plane[i] += green[i];
+      if (base) for (let i = 0; i < size; ++i) plane[i] += base[i];
       planes[3 * lobe + channel] = plane;
     }
   }
@@ -158,7 +166,12 @@ function load(folder, stem) {
     loaded.set(key, new Promise((resolve, reject) => {
       waiting.set(key, { resolve, reject });
       const file = `data/${encodeURIComponent(folder)}/${encodeURIComponent(stem)}.js`;
-      const script = h("script", { src: file, onerror: () => reject(new Error(`${file} is missing: the report's folder moves as a whole`)) });
+      if (location.protocol.startsWith("http")) {  // a server may claim another encoding: read the bytes
+        fetch(file).then((r) => r.ok ? r.arrayBuffer() : Promise.reject(new Error(`${file}: ${r.status}`)))
+          .then((bytes) => Function(new TextDecoder("windows-1252").decode(bytes))()).catch(reject);
+        return;
+      }
+      const script = h("script", { src: file, charset: "windows-1252", onerror: () => reject(new Error(`${file} is missing: the report's folder moves as a whole`)) });
       script.addEventListener("load", () => script.remove());
       document.head.append(script);
     }));
@@ -391,7 +404,7 @@ function buildScene() {
     h("h2", { class: "question", id: "scene-heading", tabindex: "-1", text: s.question || s.name }),
     h("div", { class: "facts" },
       fact("size", `${s.width} × ${s.height}`), fact("lit pixels", s.lit_pixels.toLocaleString("en")), fact("unit", s.unit || "–"),
-      s.effects.length ? fact("effects", s.effects.join(", ")) : null,
+      s.effects.length ? fact("effects", s.effects.map((e) => e.replace(/^EFFECT_/, "").toLowerCase().replaceAll("_", " ")).join(", ")) : null,
       fact("truth good to", known(s.truth.relative_error) ? percent(s.truth.relative_error) + " %" : "–"),
       fact("truth took", seconds(s.truth.seconds) + (s.truth.cached ? " (now from the cache)" : "")),
       s.file ? fact("file", s.file) : null));
@@ -407,7 +420,7 @@ function buildScene() {
   ui.log = segments("Scale", [["0", "linear"], ["1", "log"]], state.log ? "1" : "0", (v) => set({ log: v === "1" }));
   const steps = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1];
   ui.range = h("select", { "aria-label": "End of the maps' scale", onchange: (e) => set({ range: Number(e.target.value) }) },
-    h("option", { value: "0", text: `±${percent(s.scale).replace(/\.?0+$/, "")} % (this scene's)` }), steps.map((v) => h("option", { value: v, text: `±${Number((100 * v).toPrecision(2))} %` })));
+    h("option", { value: "0", text: `±${Number((100 * s.scale).toPrecision(2))} % (this scene's)` }), steps.map((v) => h("option", { value: v, text: `±${Number((100 * v).toPrecision(2))} %` })));
   ui.ev = h("input", { type: "range", min: "-8", max: "8", step: "0.25", "aria-label": "Exposure, stops from the scene's own", oninput: (e) => set({ ev: Number(e.target.value) }) });
   ui.evText = h("output", {});
   ui.zoom = segments("Zoom", [["0", "fit"], ["1", "1×"], ["2", "2×"], ["4", "4×"], ["8", "8×"], ["16", "16×"]], String(state.zoom), (z) => zoomTo(Number(z)));
@@ -1011,7 +1024,7 @@ const TERMS = [
   ["Time", "Time of the lighting pass alone as a ratio to the point variant, measured in the same interleaved run."],
   ["Published and default", "name@published is the form its author published; the plain name is the best form we know. Both are shown, so that nobody is judged by our changes or robbed of theirs."],
   ["Emitters", "Lights seen directly are added to the pictures and are part of no metric and no map. Techniques cast no shadows, and neither does the truth they are ranked against."],
-  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is the picture at the scene's exposure."],
+  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is the picture at the scene's exposure. To keep the folder small, values below an eighth of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; every metric was computed from the full floats."],
 ];
 
 function buildGlossary() {
