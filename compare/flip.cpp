@@ -24,12 +24,14 @@ constexpr double kPixelsPerDegree = 0.7 * 3840.0 / 0.7 * std::numbers::pi / 180.
 // [Andersson et al. 2020, table 1].
 constexpr double kAchromaticB = 0.0047, kRedGreenB = 0.0053;
 constexpr double kBlueYellowA[2] = {34.1, 13.5}, kBlueYellowB[2] = {0.04, 0.025};
-constexpr double kFeatureWidth = 0.082;  // degrees, peak to trough of the eye's edge detector [2020, sec. 4.2.1]
-constexpr float kColorExponent = 0.7f;   // q_c; that of features, q_f, is ½, a square root [2020, sec. 4.3]
+constexpr double kFeatureWidth =
+    0.082;  // degrees, peak to trough of the eye's edge detector [2020, sec. 4.2.1]
+constexpr float kColorExponent = 0.7f;  // q_c; that of features, q_f, is ½, a square root [2020, sec. 4.3]
 constexpr float kColorKnee = 0.4f, kKneeValue = 0.95f;  // p_c, p_t [2020, sec. 4.1.3]
 constexpr double kToneTarget = 0.85;                    // t of both exposures [2021, sec. 3.2]
 
-// Narkowicz's ACES fit (2.51 x² + 0.03 x) / (2.43 x² + 0.59 x + 0.14), with the pre-exposure 0.6 it was made for folded in.
+// Narkowicz's ACES fit (2.51 x² + 0.03 x) / (2.43 x² + 0.59 x + 0.14), with the pre-exposure 0.6 it was made
+// for folded in.
 constexpr float kAces[5] = {0.36f * 2.51f, 0.6f * 0.03f, 0.36f * 2.43f, 0.6f * 0.59f, 0.14f};
 
 constexpr int kPad = 16;  // taps to either side at most; kernels below reach 10
@@ -44,7 +46,7 @@ struct Taps {
 struct Filters {
   Taps achromatic, red_green, blue_yellow[2];
   float blue_yellow_share[2];
-  Taps feature, edge, point;  // Gaussian, first and second derivative
+  Taps feature, edge, point;                        // Gaussian, first and second derivative
   std::array<float, 9> xyz_from_rgb, rgb_from_xyz;  // row by row; XYZ relative to white
 };
 
@@ -92,7 +94,8 @@ Taps GaussianTaps(double sigma, int radius) {
   double sum = 1.0;
   for (int k = 1; k <= taps.radius; ++k) sum += 2.0 * std::exp(-k * k / (2.0 * sigma * sigma));
   for (int k = 0; k <= taps.radius; ++k) {
-    taps.weight[static_cast<std::size_t>(k)] = static_cast<float>(std::exp(-k * k / (2.0 * sigma * sigma)) / sum);
+    taps.weight[static_cast<std::size_t>(k)] =
+        static_cast<float>(std::exp(-k * k / (2.0 * sigma * sigma)) / sum);
   }
   return taps;
 }
@@ -105,7 +108,8 @@ Taps EdgeTaps(double sigma, int radius) {
   double sum = 0.0;
   for (int k = 1; k <= radius; ++k) sum += k * std::exp(-k * k / (2.0 * sigma * sigma));
   for (int k = 1; k <= radius; ++k) {
-    taps.weight[static_cast<std::size_t>(k)] = static_cast<float>(-k * std::exp(-k * k / (2.0 * sigma * sigma)) / sum);
+    taps.weight[static_cast<std::size_t>(k)] =
+        static_cast<float>(-k * std::exp(-k * k / (2.0 * sigma * sigma)) / sum);
   }
   return taps;
 }
@@ -128,7 +132,8 @@ Taps PointTaps(double sigma, int radius) {
   return taps;
 }
 
-// Linear sRGB to CIE XYZ over D65's, from the primaries' chromaticities; the fractions are exact for white (0.3127, 0.3290).
+// Linear sRGB to CIE XYZ over D65's, from the primaries' chromaticities; the fractions are exact for white
+// (0.3127, 0.3290).
 glm::dmat3 XyzFromRgb() {
   const glm::dvec3 rows[3] = {glm::dvec3(10135552.0, 8788810.0, 4435075.0) / 24577794.0,
                               glm::dvec3(2613072.0, 8788810.0, 887015.0) / 12288897.0,
@@ -144,7 +149,9 @@ glm::dmat3 XyzFromRgb() {
 Filters MakeFilters() {
   Filters filters;
   // exp(−π² d²/b) over d degrees has a standard deviation of sqrt(b / 2π²) degrees.
-  const auto sigma = [](double b) { return std::sqrt(b / (2.0 * std::numbers::pi * std::numbers::pi)) * kPixelsPerDegree; };
+  const auto sigma = [](double b) {
+    return std::sqrt(b / (2.0 * std::numbers::pi * std::numbers::pi)) * kPixelsPerDegree;
+  };
   const int radius = static_cast<int>(std::ceil(3.0 * sigma(kBlueYellowB[0])));  // the widest one's, for all
   filters.achromatic = GaussianTaps(sigma(kAchromaticB), radius);
   filters.red_green = GaussianTaps(sigma(kRedGreenB), radius);
@@ -156,7 +163,8 @@ Filters MakeFilters() {
     for (int k = 1; k <= radius; ++k) sum += 2.0 * std::exp(-k * k / (2.0 * s * s));
     share[i] = kBlueYellowA[i] * std::sqrt(std::numbers::pi / kBlueYellowB[i]) * sum * sum;
   }
-  for (int i = 0; i < 2; ++i) filters.blue_yellow_share[i] = static_cast<float>(share[i] / (share[0] + share[1]));
+  for (int i = 0; i < 2; ++i)
+    filters.blue_yellow_share[i] = static_cast<float>(share[i] / (share[0] + share[1]));
   const double feature = 0.5 * kFeatureWidth * kPixelsPerDegree;
   const int feature_radius = static_cast<int>(std::ceil(3.0 * feature));
   filters.feature = GaussianTaps(feature, feature_radius);
@@ -196,7 +204,9 @@ float LargestColorDistance() {
   return static_cast<float>(std::pow(distance, static_cast<double>(kColorExponent)));
 }
 
-std::size_t Stride(int width) { return static_cast<std::size_t>((width + kLanes - 1) / kLanes * kLanes); }
+std::size_t Stride(int width) {
+  return static_cast<std::size_t>((width + kLanes - 1) / kLanes * kLanes);
+}
 
 // Nothing in the result's channels where a pixel is not finite.
 Planar MakePlanar(std::span<const glm::vec3> image, int width) {
@@ -214,8 +224,9 @@ Planar MakePlanar(std::span<const glm::vec3> image, int width) {
       for (int x = 0; x < width; ++x) {
         // Beyond 1e15 even the darkest exposure of any reference shows white, and squares stay finite.
         plane[static_cast<std::size_t>(y) * planar.stride + static_cast<std::size_t>(x)] = std::clamp(
-            image[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)][c], 0.0f,
-            1e15f);
+            image[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]
+                 [c],
+            0.0f, 1e15f);
       }
     }
   }
@@ -223,7 +234,8 @@ Planar MakePlanar(std::span<const glm::vec3> image, int width) {
 }
 
 void Resize(FlipReference::Percept& percept, std::size_t size) {
-  for (auto* plane : {&percept.lightness, &percept.a, &percept.b, &percept.edge, &percept.point}) plane->resize(size);
+  for (auto* plane : {&percept.lightness, &percept.a, &percept.b, &percept.edge, &percept.point})
+    plane->resize(size);
 }
 
 void FilterRows(const Planar& image, float exposure, Planes7& planes) {
@@ -250,7 +262,8 @@ std::vector<float> ChooseExposures(const Planar& image) {
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * image.stride + static_cast<std::size_t>(x);
-      luminance.push_back(0.2126f * image.channel[0][i] + 0.7152f * image.channel[1][i] + 0.0722f * image.channel[2][i]);
+      luminance.push_back(0.2126f * image.channel[0][i] + 0.7152f * image.channel[1][i] +
+                          0.0722f * image.channel[2][i]);
     }
   }
   const float brightest = *std::max_element(luminance.begin(), luminance.end());
@@ -271,7 +284,8 @@ std::vector<float> ChooseExposures(const Planar& image) {
   const double stop = std::log2(ToneTargetLuminance() / middle);
   const int count = std::max(2, static_cast<int>(std::ceil(stop - start)));
   std::vector<float> exposures;
-  for (int i = 0; i < count; ++i) exposures.push_back(static_cast<float>(start + (stop - start) * i / (count - 1)));
+  for (int i = 0; i < count; ++i)
+    exposures.push_back(static_cast<float>(start + (stop - start) * i / (count - 1)));
   return exposures;
 }
 
@@ -293,7 +307,8 @@ FlipReference::FlipReference(std::span<const glm::vec3> reference, int width) : 
     Resize(percept, planes[0].size());
     tbb::parallel_for(tbb::blocked_range<int>(0, height_, 16), [&](const tbb::blocked_range<int>& rows) {
       for (int y = rows.begin(); y < rows.end(); ++y) {
-        kernels.perceive_row(planes, width_, image.stride, height_, y, TheFilters(), percept, static_cast<std::size_t>(y));
+        kernels.perceive_row(planes, width_, image.stride, height_, y, TheFilters(), percept,
+                             static_cast<std::size_t>(y));
       }
     });
     percepts_.push_back(std::move(percept));
@@ -302,7 +317,8 @@ FlipReference::FlipReference(std::span<const glm::vec3> reference, int width) : 
 
 std::vector<float> FlipReference::MapOf(std::span<const glm::vec3> test) const {
   if (test.size() != static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {
-    throw std::invalid_argument("images of different sizes cannot be compared; expected equal width and height");
+    throw std::invalid_argument(
+        "images of different sizes cannot be compared; expected equal width and height");
   }
   const Planar image = MakePlanar(test, width_);
   if (exposures_.empty() || image.channel[0].empty()) return {};

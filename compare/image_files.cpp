@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -15,11 +16,12 @@ namespace arealab {
 namespace {
 
 constexpr float kLargestHalf = 65504.0f;  // (2 − 2⁻¹⁰) · 2¹⁵
-constexpr float kSmallestPeak = 0.0625f;  // 10 stops above the smallest normal half, 2⁻¹⁴: full precision down to 1/1024 of it
+constexpr float kSmallestPeak =
+    0.0625f;  // 10 stops above the smallest normal half, 2⁻¹⁴: full precision down to 1/1024 of it
 const char* const kLobes[2] = {"diffuse", "specular"};
 
 // IEEE 754 binary16: sign, 5 bits of exponent biased by 15, 10 of fraction.
-float HalfToFloat(std::uint16_t bits) {
+float DecodeHalf(std::uint16_t bits) {
   const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
   float v = 0.0f;
   if (exponent == 31) {
@@ -32,9 +34,19 @@ float HalfToFloat(std::uint16_t bits) {
   return (bits & 0x8000) != 0 ? -v : v;
 }
 
+float HalfToFloat(std::uint16_t bits) {
+  static const std::vector<float> table = [] {
+    std::vector<float> values;
+    for (unsigned i = 0; i < 65536; ++i) values.push_back(DecodeHalf(static_cast<std::uint16_t>(i)));
+    return values;
+  }();
+  return table[bits];
+}
+
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& why) {
-  throw InputError(fmt::format("{}: cannot write the image ({}); expected a folder with room that may be written to",
-                               file.string(), why));
+  throw InputError(
+      fmt::format("{}: cannot write the image ({}); expected a folder with room that may be written to",
+                  file.string(), why));
 }
 
 // `pixels` are interleaved, `stride` bytes a pixel.
@@ -48,15 +60,19 @@ void WriteFile(const std::filesystem::path& file, const OIIO::ImageSpec& spec, c
 }
 
 // sRGB's transfer curve [IEC 61966-2-1], in and out in [0, 1].
-float EncodeSrgb(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f; }
+float EncodeSrgb(float v) {
+  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+}
 
-// 8-bit codes by a table over [0, 1]: 4096 steps are finer than the codes except near black, where the curve is a line.
+// 8-bit codes by a table over [0, 1]: 4096 steps are finer than the codes except near black, where the curve
+// is a line.
 std::uint8_t SrgbCode(float v) {
   constexpr int kSteps = 4096;
   static const std::vector<std::uint8_t> table = [] {
     std::vector<std::uint8_t> codes;
     for (int i = 0; i <= kSteps; ++i) {
-      codes.push_back(static_cast<std::uint8_t>(std::lround(255.0f * EncodeSrgb(static_cast<float>(i) / kSteps))));
+      codes.push_back(
+          static_cast<std::uint8_t>(std::lround(255.0f * EncodeSrgb(static_cast<float>(i) / kSteps))));
     }
     return codes;
   }();
@@ -90,8 +106,18 @@ int ChooseExponent(const RadianceImage& image) {
   return fits ? 0 : std::ilogb(largest) - 14;
 }
 
-// The distance between neighbouring halves at v.
-float Step(float v) { return std::ldexp(1.0f, std::max(v == 0.0f ? -14 : std::ilogb(v), -14) - 10); }
+// The distance between neighbouring halves at v: 2^(e − 10), e the exponent of v but not below −14.
+float Step(float v) {
+  const std::uint32_t exponent = (std::bit_cast<std::uint32_t>(v) >> 23) & 255;  // biased by 127
+  return std::bit_cast<float>((std::max(exponent, 127u - 14u) - 10u) << 23);
+}
+
+// v to the nearest multiple of a power of two, for |v| < 2²² steps: the sum with 1.5 · 2²³ steps has no finer
+// digits.
+float ToMultiple(float v, float step) {
+  const float shift = 12582912.0f * step;
+  return (v + shift) - shift;
+}
 
 std::uint16_t HalfBits(float v) {
   // A −0 would cost the coder a jump of 32768 for nothing.
@@ -102,19 +128,21 @@ std::uint16_t HalfBits(float v) {
 std::uint16_t Round(float v, float coarsest, const float* truth, float stored) {
   if (!std::isfinite(v) || v == 0.0f) return HalfBits(v);
   const float step = std::max(Step(v), coarsest);
-  float rounded = std::nearbyint(v / step) * step;
+  float rounded = ToMultiple(v, step);
   if (truth != nullptr && std::isfinite(*truth) && std::max(Step(*truth), coarsest) == step) {
-    rounded = stored + std::nearbyint((v - *truth) / step) * step;
+    rounded = stored + ToMultiple(v - *truth, step);
   }
   return HalfBits(std::clamp(rounded, -kLargestHalf, kLargestHalf));
 }
 
-HalfImage RoundImage(const RadianceImage& image, float coarse_below, const RadianceImage* truth, const HalfImage* stored) {
+HalfImage RoundImage(const RadianceImage& image, float coarse_below, const RadianceImage* truth,
+                     const HalfImage* stored) {
   HalfImage result;
   result.width = image.width;
   result.height = image.height;
   result.exponent = ChooseExponent(image);
-  if (stored != nullptr && (stored->exponent != result.exponent || truth->size() != image.size())) stored = nullptr;
+  if (stored != nullptr && (stored->exponent != result.exponent || truth->size() != image.size()))
+    stored = nullptr;
   const float scale = std::ldexp(1.0f, -result.exponent);
   const float coarsest = coarse_below > 0.0f ? Step(coarse_below * scale) : 0.0f;
   for (std::size_t plane = 0; plane < 6; ++plane) {
@@ -137,13 +165,16 @@ HalfImage RoundImage(const RadianceImage& image, float coarse_below, const Radia
 
 }  // namespace
 
-HalfImage ToHalf(const RadianceImage& image) { return RoundImage(image, 0.0f, nullptr, nullptr); }
+HalfImage ToHalf(const RadianceImage& image) {
+  return RoundImage(image, 0.0f, nullptr, nullptr);
+}
 
 HalfImage ToHalf(const RadianceImage& image, float coarse_below) {
   return RoundImage(image, coarse_below, nullptr, nullptr);
 }
 
-HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceImage& truth, const HalfImage& stored) {
+HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceImage& truth,
+                 const HalfImage& stored) {
   return RoundImage(image, coarse_below, &truth, &stored);
 }
 
@@ -153,9 +184,12 @@ RadianceImage FromHalf(const HalfImage& image) {
   result.height = image.height;
   result.diffuse.resize(image.planes[0].size());
   result.specular.resize(image.planes[0].size());
+  const float scale = std::ldexp(1.0f, image.exponent);
   for (std::size_t i = 0; i < result.diffuse.size(); ++i) {
-    result.diffuse[i] = {image.Value(0, i), image.Value(1, i), image.Value(2, i)};
-    result.specular[i] = {image.Value(3, i), image.Value(4, i), image.Value(5, i)};
+    for (int c = 0; c < 3; ++c) {
+      result.diffuse[i][c] = HalfToFloat(image.planes[static_cast<std::size_t>(c)][i]) * scale;
+      result.specular[i][c] = HalfToFloat(image.planes[static_cast<std::size_t>(c) + 3][i]) * scale;
+    }
   }
   return result;
 }
@@ -172,9 +206,11 @@ void WriteExr(const std::filesystem::path& file, const HalfImage& image) {
   }
   const bool as_half = image.exponent == 0;
   const int count = static_cast<int>(planes.size());
-  OIIO::ImageSpec spec(image.width, image.height, count, as_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+  OIIO::ImageSpec spec(image.width, image.height, count,
+                       as_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
   spec.channelnames = names;
-  // Measured on smooth shading, 512×512, 6 channels: PIZ 617 KB, ZIP 325, PXR24 268 (which is lossless for halves).
+  // Measured on smooth shading, 512×512, 6 channels: PIZ 617 KB, ZIP 325, PXR24 268 (which is lossless for
+  // halves).
   spec.attribute("compression", as_half ? "pxr24" : "zip");
   const std::size_t size = image.planes[0].size();
   if (as_half) {
@@ -213,7 +249,8 @@ void WriteExr(const std::filesystem::path& file, const RadianceImage& image) {
 RadianceImage ReadExr(const std::filesystem::path& file) {
   auto input = OIIO::ImageInput::open(file.string());
   if (!input) {
-    throw InputError(fmt::format("{}: {}; expected an EXR that AreaLab wrote", file.string(), OIIO::geterror()));
+    throw InputError(
+        fmt::format("{}: {}; expected an EXR that AreaLab wrote", file.string(), OIIO::geterror()));
   }
   const OIIO::ImageSpec spec = input->spec();
   std::vector<float> pixels(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
@@ -231,7 +268,8 @@ RadianceImage ReadExr(const std::filesystem::path& file) {
     for (int c = 0; c < 3; ++c) {
       const int index = gray >= 0 ? gray : spec.channelindex(fmt::format("{}.{}", kLobes[lobe], "RGB"[c]));
       if (index < 0) {
-        throw InputError(fmt::format("{}: no layer {}; expected diffuse and specular", file.string(), kLobes[lobe]));
+        throw InputError(
+            fmt::format("{}: no layer {}; expected diffuse and specular", file.string(), kLobes[lobe]));
       }
       for (std::size_t i = 0; i < target.size(); ++i) {
         target[i][c] = pixels[i * static_cast<std::size_t>(spec.nchannels) + static_cast<std::size_t>(index)];
@@ -241,7 +279,8 @@ RadianceImage ReadExr(const std::filesystem::path& file) {
   return image;
 }
 
-void WritePng(const std::filesystem::path& file, std::span<const glm::vec3> radiance, int width, double exposure) {
+void WritePng(const std::filesystem::path& file, std::span<const glm::vec3> radiance, int width,
+              double exposure) {
   const float scale = static_cast<float>(std::exp2(exposure));
   std::vector<std::uint8_t> pixels;
   pixels.reserve(3 * radiance.size());

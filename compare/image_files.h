@@ -12,13 +12,14 @@
 
 namespace arealab {
 
-// Radiance rounded to half floats times a power of two: value = half × 2^exponent. The exponent is 0 where halves hold
-// the image well (its largest value between 1/16 and 65504); else it brings the largest value to [16384, 32768), so that
-// neither 1e6 cd/m² nor 1e-6 W/(m² sr) is lost.
+// Radiance rounded to half floats times a power of two: value = half × 2^exponent. The exponent is 0 where
+// halves hold the image well (its largest value between 1/16 and 65504); else it brings the largest value to
+// [16384, 32768), so that neither 1e6 cd/m² nor 1e-6 W/(m² sr) is lost.
 struct HalfImage {
   int width = 0, height = 0;
   int exponent = 0;
-  std::array<std::vector<std::uint16_t>, 6> planes;  // half bits: diffuse R G B, specular R G B; row 0 is the top
+  std::array<std::vector<std::uint16_t>, 6>
+      planes;  // half bits: diffuse R G B, specular R G B; row 0 is the top
 
   bool IsGray(int lobe) const;  // R = G = B, bit for bit; lobe 0 diffuse, 1 specular
   float Value(int plane, std::size_t i) const;
@@ -26,16 +27,18 @@ struct HalfImage {
 
 HalfImage ToHalf(const RadianceImage& image);
 
-// For files that are to stay small: values below `coarse_below` (in the images' unit) are kept to the step that halves
-// have there, not to a finer one; and each value is rounded by its difference from the truth, of which `truth` is exact and
-// `stored` as it was stored, so that a − b on a page is right to half a step and an exact technique differs nowhere.
-// Hence |stored − exact| is at most one step. Values of other magnitude than the truth's are rounded by themselves.
+// For files that are to stay small: values below `coarse_below` (in the images' unit) are kept to the step
+// that halves have there, not to a finer one; and each value is rounded by its difference from the truth, of
+// which `truth` is exact and `stored` as it was stored, so that a − b on a page is right to half a step and
+// an exact technique differs nowhere. Hence |stored − exact| is at most one step. Values of other magnitude
+// than the truth's are rounded by themselves.
 HalfImage ToHalf(const RadianceImage& image, float coarse_below);
-HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceImage& truth, const HalfImage& stored);
+HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceImage& truth,
+                 const HalfImage& stored);
 RadianceImage FromHalf(const HalfImage& image);
 
-// Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray), half where the exponent is 0, else float with
-// exactly the same values; lossless. Throws InputError where the file cannot be written.
+// Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray), half where the exponent is 0,
+// else float with exactly the same values; lossless. Throws InputError where the file cannot be written.
 void WriteExr(const std::filesystem::path& file, const HalfImage& image);
 // As float, unrounded.
 void WriteExr(const std::filesystem::path& file, const RadianceImage& image);
@@ -43,7 +46,8 @@ void WriteExr(const std::filesystem::path& file, const RadianceImage& image);
 RadianceImage ReadExr(const std::filesystem::path& file);
 
 // sRGB, 8 bits: clamp(radiance × 2^exposure). Non-finite values show as magenta.
-void WritePng(const std::filesystem::path& file, std::span<const glm::vec3> radiance, int width, double exposure);
+void WritePng(const std::filesystem::path& file, std::span<const glm::vec3> radiance, int width,
+              double exposure);
 
 // What a picture shows: diffuse + specular + the emitters (`emission` may be empty).
 std::vector<glm::vec3> Picture(const RadianceImage& image, std::span<const glm::vec3> emission);

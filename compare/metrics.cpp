@@ -10,13 +10,18 @@
 namespace arealab {
 namespace {
 
-bool IsFinite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool IsFinite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
-bool IsBlack(const glm::vec3& v) { return v.x == 0.0f && v.y == 0.0f && v.z == 0.0f; }
+bool IsBlack(const glm::vec3& v) {
+  return v.x == 0.0f && v.y == 0.0f && v.z == 0.0f;
+}
 
 void CheckSizes(std::size_t a, std::size_t b, int width) {
   if (a != b || width <= 0 || a % static_cast<std::size_t>(width) != 0) {
-    throw std::invalid_argument("images of different sizes cannot be compared; expected equal width and height");
+    throw std::invalid_argument(
+        "images of different sizes cannot be compared; expected equal width and height");
   }
 }
 
@@ -44,7 +49,8 @@ ErrorMetrics CompareImages(std::span<const glm::vec3> a, std::span<const glm::ve
 
   const double mean_luminance = luminance / static_cast<double>(count);
   const double epsilon = 0.01 * mean_luminance * (0.01 * mean_luminance);
-  double squares = 0.0, reference_squares = 0.0, differences = 0.0, references = 0.0, relative = 0.0, absolute = 0.0;
+  double squares = 0.0, reference_squares = 0.0, differences = 0.0, references = 0.0, relative = 0.0,
+         absolute = 0.0;
   bool relative_defined = true;
   std::vector<float> largest;
   largest.reserve(count);
@@ -123,7 +129,8 @@ double HdrFlip(std::span<const glm::vec3> test, std::span<const glm::vec3> refer
 }
 
 void Measure(const RadianceImage& truth, const FlipReference* flip, VariantResult* result) {
-  if (!result->image) throw std::invalid_argument("a variant without an image cannot be measured; expected one");
+  if (!result->image)
+    throw std::invalid_argument("a variant without an image cannot be measured; expected one");
   const RadianceImage& image = *result->image;
   const std::vector<glm::vec3> total = TotalRadiance(image);
   result->nonfinite_pixels = CountNonfinitePixels(image);

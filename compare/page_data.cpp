@@ -15,10 +15,14 @@ namespace {
 
 using Plane = std::vector<std::uint16_t>;
 
-std::uint16_t Wrap(int v) { return static_cast<std::uint16_t>(v & 0xFFFF); }
+std::uint16_t Wrap(int v) {
+  return static_cast<std::uint16_t>(v & 0xFFFF);
+}
 
 // Small differences of either sign become small numbers: 0, −1, 1, −2 … → 0, 1, 2, 3 …
-std::uint16_t Zigzag(std::uint16_t v) { return Wrap((v << 1) ^ ((v & 0x8000) != 0 ? 0xFFFF : 0)); }
+std::uint16_t Zigzag(std::uint16_t v) {
+  return Wrap((v << 1) ^ ((v & 0x8000) != 0 ? 0xFFFF : 0));
+}
 
 // What a smooth image leaves over once each pixel is foretold from three neighbours.
 Plane Residual(const Plane& plane, std::size_t width) {
@@ -35,7 +39,8 @@ Plane Residual(const Plane& plane, std::size_t width) {
 // Bits that a number's length costs, summed over every fourth pixel: enough to choose by.
 std::uint64_t Cost(const Plane& residual) {
   std::uint64_t cost = 0;
-  for (std::size_t i = 0; i < residual.size(); i += 4) cost += static_cast<std::uint64_t>(std::bit_width(residual[i]));
+  for (std::size_t i = 0; i < residual.size(); i += 4)
+    cost += static_cast<std::uint64_t>(std::bit_width(residual[i]));
   return cost;
 }
 
@@ -61,12 +66,23 @@ std::string Literal(const std::vector<std::uint8_t>& bytes) {
   text.reserve(bytes.size() + bytes.size() / 32);
   for (std::uint8_t byte : bytes) {
     switch (byte) {
-      case 0: text += "\\x00"; break;
-      case '\n': text += "\\n"; break;
-      case '\r': text += "\\r"; break;
-      case '"': text += "\\\""; break;
-      case '\\': text += "\\\\"; break;
-      default: text += static_cast<char>(byte);
+      case 0:
+        text += "\\x00";
+        break;
+      case '\n':
+        text += "\\n";
+        break;
+      case '\r':
+        text += "\\r";
+        break;
+      case '"':
+        text += "\\\"";
+        break;
+      case '\\':
+        text += "\\\\";
+        break;
+      default:
+        text += static_cast<char>(byte);
     }
   }
   return text + "\"";
@@ -93,7 +109,8 @@ std::string ScriptSafe(std::string json) {
 
 std::string EncodePageImage(const std::string& key, const HalfImage& image, const HalfImage* truth) {
   const std::size_t width = static_cast<std::size_t>(image.width);
-  if (truth != nullptr && (truth->width != image.width || truth->height != image.height || truth->exponent != image.exponent)) {
+  if (truth != nullptr &&
+      (truth->width != image.width || truth->height != image.height || truth->exponent != image.exponent)) {
     truth = nullptr;
   }
   std::vector<std::uint8_t> bytes;
@@ -104,7 +121,8 @@ std::string EncodePageImage(const std::string& key, const HalfImage& image, cons
       const std::size_t index = 3 * lobe + channel;
       const Plane& plane = image.planes[index];
       std::string& mode = modes[index];
-      const Plane* bases[2] = {channel == 1 ? nullptr : &green, truth == nullptr ? nullptr : &truth->planes[index]};
+      const Plane* bases[2] = {channel == 1 ? nullptr : &green,
+                               truth == nullptr ? nullptr : &truth->planes[index]};
       const char* const names[2] = {"g", "t"};
       for (int b = 0; b < 2; ++b) {
         if (mode.empty() && bases[b] != nullptr && *bases[b] == plane) mode = std::string("=") + names[b];
@@ -130,9 +148,10 @@ std::string EncodePageImage(const std::string& key, const HalfImage& image, cons
   const nlohmann::ordered_json header = {
       {"width", image.width}, {"height", image.height}, {"exponent", image.exponent}, {"planes", modes}};
   // \u escapes keep the key readable in any encoding.
-  return fmt::format("arealabImage({},{},{});\n",
-                     ScriptSafe(nlohmann::json(key).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)),
-                     header.dump(), Literal(Deflate(bytes)));
+  return fmt::format(
+      "arealabImage({},{},{});\n",
+      ScriptSafe(nlohmann::json(key).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)),
+      header.dump(), Literal(Deflate(bytes)));
 }
 
 }  // namespace arealab

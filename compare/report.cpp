@@ -55,7 +55,9 @@ void WriteText(const fs::path& file, std::string_view text) {
   if (!stream) throw InputError(fmt::format("{}: cannot write; expected a folder with room", file.string()));
 }
 
-std::string PartialPrefix(const fs::path& target) { return fmt::format(".{}.partial-", target.filename().string()); }
+std::string PartialPrefix(const fs::path& target) {
+  return fmt::format(".{}.partial-", target.filename().string());
+}
 
 // Folders that an interrupted run left beside the target: those whose process is gone.
 void RemoveStale(const fs::path& target) {
@@ -66,7 +68,8 @@ void RemoveStale(const fs::path& target) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(prefix)) continue;
     const long process = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
-    if (process > 0 && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) stale.push_back(entry.path());
+    if (process > 0 && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH)
+      stale.push_back(entry.path());
   }
   for (const fs::path& folder : stale) fs::remove_all(folder, ignored);
 }
@@ -80,8 +83,8 @@ class PartialFolder {
     fs::remove_all(path_, error);
     fs::create_directories(path_, error);
     if (error) {
-      throw InputError(fmt::format("{}: cannot create ({}); expected a folder that may be written to", path_.string(),
-                                   error.message()));
+      throw InputError(fmt::format("{}: cannot create ({}); expected a folder that may be written to",
+                                   path_.string(), error.message()));
     }
   }
   ~PartialFolder() {
@@ -134,11 +137,11 @@ struct Rounding {
   HalfImage truth;
 };
 
-// Half floats are finer in the dark than any map shows: below 1/8 of the truth's mean luminance m their step at m/8 is
-// kept, an error of at most 2⁻¹⁴ m. Where the truth alone would still take more than 1.5 bytes a pixel on the page (fine
-// texture all over) the step is doubled until it does not, at most to 2⁻⁸ m: a folder of ten scenes and ten variants at
-// 512×512 stays below 60 MB.
-constexpr double kCoarseBelow = 1.0 / 8.0, kCoarsest = 4.0, kBytesPerPixel = 1.5;
+// Half floats are finer in the dark than any map shows: below 1/8 of the truth's mean luminance m their step
+// at m/8 is kept, an error of at most 2⁻¹⁴ m. Where the truth alone would still take more than 1.4 bytes a
+// pixel on the page (fine texture all over) the step is doubled until it does not, at most to 2⁻⁸ m: a folder
+// of ten scenes and ten variants at 512×512 stays below 60 MB.
+constexpr double kCoarseBelow = 1.0 / 8.0, kCoarsest = 4.0, kBytesPerPixel = 1.4;
 constexpr double kSmallFile = 65536.0;  // bytes; never worth it
 
 Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
@@ -189,8 +192,8 @@ void WriteImages(const Job& job, const fs::path& root) {
   WritePng(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width, scene.exposure);
 }
 
-// The luminance below which a relative difference is taken relative to this instead: 1 % of the truth's mean over the
-// pixels that it lights.
+// The luminance below which a relative difference is taken relative to this instead: 1 % of the truth's mean
+// over the pixels that it lights.
 double Floor(const std::vector<glm::vec3>& truth) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -203,8 +206,8 @@ double Floor(const std::vector<glm::vec3>& truth) {
   return count == 0 ? 0.0 : 0.01 * sum / static_cast<double>(count);
 }
 
-// One scale for all maps of a scene: the 1-2-5 step above the median, over the variants that are ranked, of the relative
-// difference that 95 % of their lit pixels stay below.
+// One scale for all maps of a scene: the 1-2-5 step above the median, over the variants that are ranked, of
+// the relative difference that 95 % of their lit pixels stay below.
 double MapScale(const SceneResult& scene, const std::vector<glm::vec3>& truth, double floor) {
   std::vector<double> levels;
   for (const VariantResult& variant : scene.variants) {
@@ -223,7 +226,8 @@ double MapScale(const SceneResult& scene, const std::vector<glm::vec3>& truth, d
   }
   double typical = 0.1;
   if (!levels.empty()) {
-    std::nth_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2), levels.end());
+    std::nth_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2),
+                     levels.end());
     typical = levels[levels.size() / 2];
   }
   const double exponent = std::floor(std::log10(std::clamp(typical, 1e-4, 1.0)));
@@ -235,7 +239,8 @@ double MapScale(const SceneResult& scene, const std::vector<glm::vec3>& truth, d
 
 std::string Substitute(std::string text, std::string_view mark, std::string_view value) {
   const std::size_t at = text.find(mark);
-  if (at == std::string::npos) throw std::logic_error(fmt::format("index.html lacks {}; expected it once", mark));
+  if (at == std::string::npos)
+    throw std::logic_error(fmt::format("index.html lacks {}; expected it once", mark));
   return text.replace(at, mark.size(), value);
 }
 
@@ -246,11 +251,13 @@ void CheckReportDirectory(const fs::path& directory) {
   std::error_code error;
   if (fs::exists(target, error)) {
     if (!fs::is_directory(target, error)) {
-      throw InputError(fmt::format("{}: is a file; expected a new folder or an earlier report", target.string()));
+      throw InputError(
+          fmt::format("{}: is a file; expected a new folder or an earlier report", target.string()));
     }
     if (!fs::is_empty(target, error) &&
         !(fs::exists(target / "results.json", error) && fs::exists(target / "index.html", error))) {
-      throw InputError(fmt::format("{}: holds something else; expected a new folder or an earlier report", target.string()));
+      throw InputError(fmt::format("{}: holds something else; expected a new folder or an earlier report",
+                                   target.string()));
     }
     if (error) throw InputError(fmt::format("{}: {}; expected a folder", target.string(), error.message()));
   }
@@ -261,7 +268,8 @@ void CheckReportDirectory(const fs::path& directory) {
   }
 }
 
-void WriteReport(const Results& results, const fs::path& directory, const std::function<void(double)>& progress) {
+void WriteReport(const Results& results, const fs::path& directory,
+                 const std::function<void(double)>& progress) {
   CheckReportDirectory(directory);
   const fs::path target = Normal(directory);
   RemoveStale(target);
@@ -303,7 +311,9 @@ void WriteReport(const Results& results, const fs::path& directory, const std::f
     if (scene.truth) {
       const std::vector<glm::vec3> total = TotalRadiance(*scene.truth);
       const double floor = Floor(total);
-      scene_json["floor"] = {{"total", floor}, {"diffuse", Floor(scene.truth->diffuse)}, {"specular", Floor(scene.truth->specular)}};
+      scene_json["floor"] = {{"total", floor},
+                             {"diffuse", Floor(scene.truth->diffuse)},
+                             {"specular", Floor(scene.truth->specular)}};
       scene_json["scale"] = MapScale(scene, total, floor);
       // What the files' rounding may amount to where the picture is darker than that.
       scene_json["coarse_below"] = static_cast<double>(roundings[s].coarse_below);

@@ -1,4 +1,5 @@
-// Writes results.json, results.csv, the images and the page that shows them, as one folder that moves into place whole.
+// Writes results.json, results.csv, the images and the page that shows them, as one folder that moves into
+// place whole.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +9,20 @@
 
 namespace arealab {
 
-// Throws InputError where `directory` cannot become a report: it is a file, or a folder that holds anything but an earlier
-// report, or nothing can be written beside it. Creates its parents. Call it before long work.
+// Throws InputError where `directory` cannot become a report: it is a file, or a folder that holds anything
+// but an earlier report, or nothing can be written beside it. Creates its parents. Call it before long work.
 void CheckReportDirectory(const std::filesystem::path& directory);
 
-// Writes to a temporary folder beside `directory`, then renames; an earlier report there is replaced only then, in one step.
+// Writes to a temporary folder beside `directory`, then renames; an earlier report there is replaced only
+// then, in one step.
 //   index.html               the page; opens from disk, offline
 //   results.json, results.csv
-//   images/SCENE/VARIANT.exr layers diffuse and specular (compare/image_files.h); VARIANT "truth" is the ground truth
-//   images/SCENE/VARIANT.png the picture at the scene's exposure, emitters included
+//   images/SCENE/VARIANT.exr layers diffuse and specular (compare/image_files.h); VARIANT "truth" is the
+//   ground truth images/SCENE/VARIANT.png the picture at the scene's exposure, emitters included
 //   data/SCENE/VARIANT.js    what the page loads: the same values as the EXR's
 // Names are the scene's and the variant's, with '_' for what a file name should not hold.
-// `progress` gets the fraction done, from one thread at a time. Throws InputError where the folder cannot be written.
+// `progress` gets the fraction done, from one thread at a time. Throws InputError where the folder cannot be
+// written.
 void WriteReport(const Results& results, const std::filesystem::path& directory,
                  const std::function<void(double)>& progress = {});
 

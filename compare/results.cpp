@@ -12,11 +12,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json Number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+Json Number(double v) {
+  return std::isfinite(v) ? Json(v) : Json(nullptr);
+}
 
 Json ErrorJson(const ErrorMetrics& error) {
-  Json json = {{"rel_rmse", Number(error.rel_rmse)}, {"bias", Number(error.bias)}, {"relmse", Number(error.relmse)},
-               {"mae", Number(error.mae)},           {"p99", Number(error.p99)},   {"max", Number(error.max)},
+  Json json = {{"rel_rmse", Number(error.rel_rmse)}, {"bias", Number(error.bias)},
+               {"relmse", Number(error.relmse)},     {"mae", Number(error.mae)},
+               {"p99", Number(error.p99)},           {"max", Number(error.max)},
                {"flip", Number(error.flip)}};
   json["max_pixel"] = error.max_x < 0 ? Json(nullptr) : Json::array({error.max_x, error.max_y});
   return json;
@@ -79,12 +82,14 @@ std::string CsvField(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string CsvNumber(double v) { return std::isfinite(v) ? fmt::format("{:.9g}", v) : std::string(); }
+std::string CsvNumber(double v) {
+  return std::isfinite(v) ? fmt::format("{:.9g}", v) : std::string();
+}
 
 // Characters, not bytes: names and units are UTF-8.
 std::size_t Columns(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 std::string Percent(double v) {
@@ -129,13 +134,13 @@ std::string ResultsCsv(const Results& results) {
         const bool located = error->max_x >= 0;
         csv += fmt::format(
             "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", CsvField(scene.name),
-            CsvField(variant.name), lobe, variant.supported ? 1 : 0, CsvNumber(error->rel_rmse), CsvNumber(error->bias),
-            CsvNumber(error->relmse), CsvNumber(error->mae), CsvNumber(error->p99), CsvNumber(error->max),
-            located ? std::to_string(error->max_x) : "", located ? std::to_string(error->max_y) : "",
-            CsvNumber(error->flip), variant.nonfinite_pixels, variant.within_truth_error ? 1 : 0,
-            CsvNumber(scene.truth_relative_error), CsvNumber(variant.time.ns_per_pixel),
-            CsvNumber(variant.time.ratio_to_point), CsvNumber(variant.time.ratio_low),
-            CsvNumber(variant.time.ratio_high), CsvField(variant.reason));
+            CsvField(variant.name), lobe, variant.supported ? 1 : 0, CsvNumber(error->rel_rmse),
+            CsvNumber(error->bias), CsvNumber(error->relmse), CsvNumber(error->mae), CsvNumber(error->p99),
+            CsvNumber(error->max), located ? std::to_string(error->max_x) : "",
+            located ? std::to_string(error->max_y) : "", CsvNumber(error->flip), variant.nonfinite_pixels,
+            variant.within_truth_error ? 1 : 0, CsvNumber(scene.truth_relative_error),
+            CsvNumber(variant.time.ns_per_pixel), CsvNumber(variant.time.ratio_to_point),
+            CsvNumber(variant.time.ratio_low), CsvNumber(variant.time.ratio_high), CsvField(variant.reason));
       }
     }
   }
@@ -165,9 +170,11 @@ std::string SummaryTable(const SceneResult& scene) {
     }
     rows.push_back({v->short_name, Percent(v->total.rel_rmse), Percent(v->diffuse.rel_rmse),
                     Percent(v->specular.rel_rmse), Percent(v->total.bias)});
-    if (flipped) rows.back().push_back(std::isfinite(v->total.flip) ? fmt::format("{:.4f}", v->total.flip) : "–");
+    if (flipped)
+      rows.back().push_back(std::isfinite(v->total.flip) ? fmt::format("{:.4f}", v->total.flip) : "–");
     if (timed) {
-      rows.back().push_back(std::isfinite(v->time.ratio_to_point) ? fmt::format("×{:.2f}", v->time.ratio_to_point) : "–");
+      rows.back().push_back(
+          std::isfinite(v->time.ratio_to_point) ? fmt::format("×{:.2f}", v->time.ratio_to_point) : "–");
     }
     std::string remark = v->within_truth_error ? "within truth's error" : "";
     if (v->nonfinite_pixels > 0) {
@@ -186,7 +193,8 @@ std::string SummaryTable(const SceneResult& scene) {
     std::string line = "  ";
     for (std::size_t c = 0; c < row.size(); ++c) {
       const bool left = c == 0 || row.size() == 2 || c + 1 == row.size();
-      const std::string pad(widths[c] > Columns(row[c]) && row.size() >= c ? widths[c] - Columns(row[c]) : 0, ' ');
+      const std::string pad(widths[c] > Columns(row[c]) && row.size() >= c ? widths[c] - Columns(row[c]) : 0,
+                            ' ');
       line += (c > 0 ? "  " : "") + (left ? row[c] + pad : pad + row[c]);
     }
     line.erase(line.find_last_not_of(' ') + 1);

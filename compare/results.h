@@ -36,7 +36,7 @@ struct VariantResult {
   std::string note;        // author's form and ours
   std::string citation;
   bool supported = true;
-  std::string reason;      // why not
+  std::string reason;  // why not
   int nonfinite_pixels = 0;
   ErrorMetrics total, diffuse, specular;  // against truth
   bool within_truth_error = false;        // error below 4 × the truth's own: not ranked
@@ -52,9 +52,9 @@ struct PairResult {  // of variant b as reference
 struct SceneResult {
   std::string name, question, file, unit;  // unit: "W/(m² sr)" or "cd/m²"
   int width = 0, height = 0;
-  double exposure = 0.0;              // EV
-  std::vector<std::string> effects;   // those that are on
-  int lit_pixels = 0;                 // that truth lights
+  double exposure = 0.0;             // EV
+  std::vector<std::string> effects;  // those that are on
+  int lit_pixels = 0;                // that truth lights
   double truth_relative_error = kNotMeasured, truth_seconds = kNotMeasured;
   bool truth_cached = false;
   std::shared_ptr<const RadianceImage> truth;
@@ -64,9 +64,9 @@ struct SceneResult {
 };
 
 struct Results {
-  std::string command;  // that made them
-  std::string version;  // AreaLab's
-  std::string date;     // ISO 8601
+  std::string command;                         // that made them
+  std::string version;                         // AreaLab's
+  std::string date;                            // ISO 8601
   std::map<std::string, std::string> machine;  // "cpu", "cores", "os", "compiler", library versions
   std::string platform, renderer, gl_version;  // the context
   bool software = true;                        // a CPU draws
@@ -79,7 +79,8 @@ std::string ResultsJson(const Results& results);
 // results.csv (RFC 4180): one row per scene, variant and lobe; empty where not finite or not measured.
 std::string ResultsCsv(const Results& results);
 
-// The scene's variants as aligned columns for a terminal, sorted by total error, the unsupported ones last with their reason.
+// The scene's variants as aligned columns for a terminal, sorted by total error, the unsupported ones last
+// with their reason.
 std::string SummaryTable(const SceneResult& scene);
 
 }  // namespace arealab

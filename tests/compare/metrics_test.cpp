@@ -1,4 +1,5 @@
-// Every metric on images small enough to work out by hand, and HDR-FLIP against a direct, slow writing of its formulas.
+// Every metric on images small enough to work out by hand, and HDR-FLIP against a direct, slow writing of its
+// formulas.
 #include "compare/metrics.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +42,8 @@ TEST(Metrics, ChannelsCountOneByOne) {
   EXPECT_NEAR(e.bias, (1.0 - 1.0 + 1.0) / 3.0, 1e-12);
   EXPECT_NEAR(e.mae, 3.0 / 6.0, 1e-12);  // two lit pixels of three channels
   const double mean_luminance = 0.7152 * (1.0 + 2.0) / 2.0, epsilon = std::pow(0.01 * mean_luminance, 2.0);
-  EXPECT_NEAR(e.relmse, (1.0 / epsilon + 1.0 / (1.0 + epsilon) + 1.0 / (4.0 + epsilon)) / 6.0, 1e-6 / epsilon);
+  EXPECT_NEAR(e.relmse, (1.0 / epsilon + 1.0 / (1.0 + epsilon) + 1.0 / (4.0 + epsilon)) / 6.0,
+              1e-6 / epsilon);
   EXPECT_EQ(e.max, 1.0);
   EXPECT_EQ(e.max_x, 0);  // the first of equals
   EXPECT_EQ(e.max_y, 0);
@@ -93,7 +95,8 @@ TEST(Metrics, PlantedNanIsCountedAndSpoilsTheMetrics) {
   Measure(truth, &flip, &variant);
   EXPECT_EQ(variant.nonfinite_pixels, 2);
   for (const ErrorMetrics* e : {&variant.total, &variant.specular}) {
-    for (double v : {e->rel_rmse, e->bias, e->relmse, e->mae, e->p99, e->max, e->flip}) EXPECT_TRUE(std::isnan(v));
+    for (double v : {e->rel_rmse, e->bias, e->relmse, e->mae, e->p99, e->max, e->flip})
+      EXPECT_TRUE(std::isnan(v));
     EXPECT_EQ(e->max_x, -1);
   }
   EXPECT_EQ(variant.diffuse.rel_rmse, 0.0);
@@ -120,7 +123,8 @@ TEST(Metrics, SizeMismatchThrows) {
   EXPECT_THROW(flip.MapOf(six), std::invalid_argument);
 }
 
-// ---- HDR-FLIP, written down directly: two-dimensional kernels, double precision, the library's transcendentals.
+// ---- HDR-FLIP, written down directly: two-dimensional kernels, double precision, the library's
+// transcendentals.
 
 struct Lab {
   double l, a, b;
@@ -131,8 +135,8 @@ struct Direct {
   double ppd = 0.7 * 3840.0 / 0.7 * 3.14159265358979323846 / 180.0;
 
   static glm::dmat3 ToXyz() {  // sRGB's primaries, D65
-    return glm::transpose(glm::dmat3(0.41238656, 0.35759149, 0.18045049, 0.21263682, 0.71518298, 0.07218020, 0.01933062,
-                                     0.11919716, 0.95037259));
+    return glm::transpose(glm::dmat3(0.41238656, 0.35759149, 0.18045049, 0.21263682, 0.71518298, 0.07218020,
+                                     0.01933062, 0.11919716, 0.95037259));
   }
   static glm::dvec3 White() { return ToXyz() * glm::dvec3(1.0); }
   static double Aces(double v) {
@@ -147,7 +151,8 @@ struct Direct {
     std::vector<double> out(in.size());
     double positive = 0.0, negative = 0.0;
     for (int v = -radius; v <= radius; ++v) {
-      for (int u = -radius; u <= radius; ++u) (kernel(u, v) > 0.0 ? positive : negative) += std::abs(kernel(u, v));
+      for (int u = -radius; u <= radius; ++u)
+        (kernel(u, v) > 0.0 ? positive : negative) += std::abs(kernel(u, v));
     }
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
@@ -165,7 +170,8 @@ struct Direct {
   }
   double Spatial(double a1, double b1, double a2, double b2, int u, int v) const {
     const double pi = 3.14159265358979323846, z = (u * u + v * v) / (ppd * ppd);
-    return a1 * std::sqrt(pi / b1) * std::exp(-pi * pi * z / b1) + a2 * std::sqrt(pi / b2) * std::exp(-pi * pi * z / b2);
+    return a1 * std::sqrt(pi / b1) * std::exp(-pi * pi * z / b1) +
+           a2 * std::sqrt(pi / b2) * std::exp(-pi * pi * z / b2);
   }
   static Lab HuntLab(const glm::dvec3& rgb) {
     const glm::dvec3 xyz = (ToXyz() * rgb) / White();
@@ -176,7 +182,9 @@ struct Direct {
     const double l = 116.0 * f(xyz.y) - 16.0;
     return {l, 0.01 * l * 500.0 * (f(xyz.x) - f(xyz.y)), 0.01 * l * 200.0 * (f(xyz.y) - f(xyz.z))};
   }
-  static double HyAb(const Lab& p, const Lab& q) { return std::abs(p.l - q.l) + std::hypot(p.a - q.a, p.b - q.b); }
+  static double HyAb(const Lab& p, const Lab& q) {
+    return std::abs(p.l - q.l) + std::hypot(p.a - q.a, p.b - q.b);
+  }
 
   struct Seen {
     std::vector<Lab> lab;
@@ -186,7 +194,8 @@ struct Direct {
     std::vector<double> ys, cxs, czs, normal;
     for (const glm::vec3& pixel : image) {
       glm::dvec3 mapped;
-      for (int c = 0; c < 3; ++c) mapped[c] = Aces(std::max(static_cast<double>(pixel[c]), 0.0) * std::exp2(exposure));
+      for (int c = 0; c < 3; ++c)
+        mapped[c] = Aces(std::max(static_cast<double>(pixel[c]), 0.0) * std::exp2(exposure));
       const glm::dvec3 xyz = (ToXyz() * mapped) / White();
       ys.push_back(116.0 * xyz.y - 16.0);
       cxs.push_back(500.0 * (xyz.x - xyz.y));
@@ -200,7 +209,8 @@ struct Direct {
     Seen seen;
     for (std::size_t i = 0; i < ys.size(); ++i) {
       const double y = (ys[i] + 16.0) / 116.0;
-      glm::dvec3 rgb = glm::inverse(ToXyz()) * (glm::dvec3(y + cxs[i] / 500.0, y, y - czs[i] / 200.0) * White());
+      glm::dvec3 rgb =
+          glm::inverse(ToXyz()) * (glm::dvec3(y + cxs[i] / 500.0, y, y - czs[i] / 200.0) * White());
       seen.lab.push_back(HuntLab(glm::clamp(rgb, 0.0, 1.0)));
     }
     const double sd = 0.5 * 0.082 * ppd;
@@ -216,11 +226,13 @@ struct Direct {
     }
     return seen;
   }
-  std::vector<double> Map(const Pixels& reference, const Pixels& test, const std::vector<float>& exposures) const {
+  std::vector<double> Map(const Pixels& reference, const Pixels& test,
+                          const std::vector<float>& exposures) const {
     std::vector<double> map(reference.size(), 0.0);
     const double largest = std::pow(HyAb(HuntLab({0, 1, 0}), HuntLab({0, 0, 1})), 0.7);
     for (float exposure : exposures) {
-      const Seen r = See(reference, static_cast<double>(exposure)), t = See(test, static_cast<double>(exposure));
+      const Seen r = See(reference, static_cast<double>(exposure)),
+                 t = See(test, static_cast<double>(exposure));
       for (std::size_t i = 0; i < map.size(); ++i) {
         const double c = std::pow(HyAb(r.lab[i], t.lab[i]), 0.7), knee = 0.4 * largest;
         const double color = c < knee ? 0.95 / knee * c : 0.95 + (c - knee) / (largest - knee) * 0.05;
@@ -239,11 +251,12 @@ Pixels Pattern(int width, int height, unsigned seed, float noise) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const float fx = static_cast<float>(x), fy = static_cast<float>(y);
-      const float light = 0.05f + 6.0f * std::exp(-(std::pow(fx - 14.0f, 2.0f) + std::pow(fy - 9.0f, 2.0f)) / 20.0f);
+      const float light =
+          0.05f + 6.0f * std::exp(-(std::pow(fx - 14.0f, 2.0f) + std::pow(fy - 9.0f, 2.0f)) / 20.0f);
       const float checker = (x / 6 + y / 6) % 2 == 0 ? 1.0f : 0.4f;
-      pixels.push_back(glm::max(glm::vec3(light, 0.8f * light, 0.5f * light + 0.02f * fx) * checker *
-                                    (1.0f + jitter(random)),
-                                0.0f));
+      pixels.push_back(glm::max(
+          glm::vec3(light, 0.8f * light, 0.5f * light + 0.02f * fx) * checker * (1.0f + jitter(random)),
+          0.0f));
     }
   }
   return pixels;

@@ -1,4 +1,5 @@
-// The report's folder: the schema, what the page is given against what the EXRs hold, hostile names, replacing as a whole.
+// The report's folder: the schema, what the page is given against what the EXRs hold, hostile names,
+// replacing as a whole.
 #include "compare/report.h"
 
 #include <fmt/format.h>
@@ -109,24 +110,29 @@ PageImage DecodePage(const std::string& script, const PageImage* truth = nullptr
       auto& plane = image.planes[index];
       const std::string& mode = image.modes[index];
       const std::vector<std::uint16_t> none(size, 0);
-      const auto& base = mode[1] == 'g' ? image.planes[3 * lobe + 1] : mode[1] == 't' ? truth->planes[index] : none;
+      const auto& base = mode[1] == 'g'   ? image.planes[3 * lobe + 1]
+                         : mode[1] == 't' ? truth->planes[index]
+                                          : none;
       plane.assign(size, 0);
       if (mode[0] != '=') {
         for (int y = 0; y < image.height; ++y) {
           for (int x = 0; x < image.width; ++x) {
             const auto get = [&](int u, int v) {
-              return u < 0 || v < 0 ? 0 : static_cast<int>(plane[static_cast<std::size_t>(v * image.width + u)]);
+              return u < 0 || v < 0 ? 0
+                                    : static_cast<int>(plane[static_cast<std::size_t>(v * image.width + u)]);
             };
             const std::size_t i = static_cast<std::size_t>(y * image.width + x);
             const int z = bytes[at + i] + 256 * bytes[at + size + i];
             const int residual = z % 2 == 0 ? z / 2 : -(z + 1) / 2;
             const int corner = x > 0 && y > 0 ? get(x - 1, y - 1) : 0;
-            plane[i] = static_cast<std::uint16_t>((residual + get(x - 1, y) + get(x, y - 1) - corner) & 0xFFFF);
+            plane[i] =
+                static_cast<std::uint16_t>((residual + get(x - 1, y) + get(x, y - 1) - corner) & 0xFFFF);
           }
         }
         at += 2 * size;
       }
-      for (std::size_t i = 0; i < size; ++i) plane[i] = static_cast<std::uint16_t>((plane[i] + base[i]) & 0xFFFF);
+      for (std::size_t i = 0; i < size; ++i)
+        plane[i] = static_cast<std::uint16_t>((plane[i] + base[i]) & 0xFFFF);
     }
   }
   EXPECT_EQ(at, length);
@@ -146,7 +152,8 @@ TEST(Images, PageAndExrHoldTheSameValuesWithinTheStatedRounding) {
     const PageImage truth = DecodePage(Read(folder / ("report/data/" + scene.name + "/truth.js")));
     for (const std::string& mode : truth.modes) ++modes[mode];
     double mean = 0.0;
-    for (std::size_t i = 0; i < scene.truth->size(); ++i) mean += Luminance(scene.truth->Total(i)) / scene.lit_pixels;
+    for (std::size_t i = 0; i < scene.truth->size(); ++i)
+      mean += Luminance(scene.truth->Total(i)) / scene.lit_pixels;
     for (const VariantResult& variant : scene.variants) {
       if (!variant.image) continue;
       const std::string path = scene.name + "/" + variant.name;
@@ -158,16 +165,18 @@ TEST(Images, PageAndExrHoldTheSameValuesWithinTheStatedRounding) {
       half.height = page.height;
       half.exponent = page.exponent;
       for (std::size_t p = 0; p < 6; ++p) half.planes[p] = page.planes[p];
-      const RadianceImage shown = FromHalf(half), stored = ReadExr(folder / ("report/images/" + path + ".exr"));
+      const RadianceImage shown = FromHalf(half),
+                          stored = ReadExr(folder / ("report/images/" + path + ".exr"));
       ASSERT_EQ(stored.size(), variant.image->size());
       for (std::size_t i = 0; i < stored.size(); ++i) {
         for (int c = 0; c < 3; ++c) {
           ASSERT_EQ(shown.diffuse[i][c], stored.diffuse[i][c]);
           ASSERT_EQ(shown.specular[i][c], stored.specular[i][c]);
-          // One step: 2⁻¹⁰ of the value, of an eighth of the mean where that is more; doubled where a binade ends between
-          // the value and the truth's.
-          for (const auto& [kept, exact] : {std::pair(stored.diffuse[i][c], variant.image->diffuse[i][c]),
-                                            std::pair(stored.specular[i][c], variant.image->specular[i][c])}) {
+          // One step: 2⁻¹⁰ of the value, of an eighth of the mean where that is more; doubled where a binade
+          // ends between the value and the truth's.
+          for (const auto& [kept, exact] :
+               {std::pair(stored.diffuse[i][c], variant.image->diffuse[i][c]),
+                std::pair(stored.specular[i][c], variant.image->specular[i][c])}) {
             ASSERT_NEAR(kept, exact, std::max(std::abs(static_cast<double>(exact)), mean / 8.0) * 0x1p-9);
           }
         }
@@ -203,7 +212,8 @@ TEST(Images, BrightDimAndBrokenValuesSurvive) {
   RadianceImage image{2, 2, {}, {}};
   image.diffuse = {{1e6f, 2e6f, 3e6f}, {1.0f, 1.0f, 1.0f}, {0.0f, -0.0f, 5e5f}, {7e5f, 1.0f, 100.0f}};
   image.specular.assign(4, glm::vec3(0.25f));
-  image.specular[3] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -2.0f};
+  image.specular[3] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                       -2.0f};
   for (float scale : {1.0f, 1e-9f}) {
     RadianceImage scaled = image;
     for (auto* lobe : {&scaled.diffuse, &scaled.specular}) {
@@ -240,7 +250,8 @@ TEST(Images, GreyLayersAreOneChannel) {
   const SceneResult &grey = Small().scenes[0], &warm = Small().scenes[1];
   EXPECT_TRUE(ToHalf(*grey.truth).IsGray(0) && ToHalf(*grey.truth).IsGray(1));
   EXPECT_FALSE(ToHalf(*warm.truth).IsGray(0) || ToHalf(*warm.truth).IsGray(1));
-  EXPECT_LT(2 * EncodePageImage("k", ToHalf(*grey.truth)).size(), EncodePageImage("k", ToHalf(*warm.truth)).size());
+  EXPECT_LT(2 * EncodePageImage("k", ToHalf(*grey.truth)).size(),
+            EncodePageImage("k", ToHalf(*warm.truth)).size());
 }
 
 TEST(ResultsFile, FollowsTheSchema) {
@@ -321,7 +332,8 @@ TEST(ResultsFile, SummaryIsSortedAndAligned) {
     if (v.supported) order.emplace_back(v.total.rel_rmse, v.short_name);
   }
   std::sort(order.begin(), order.end());
-  for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(lines[i + 2].find("  " + order[i].second + " "), 0u) << lines[i + 2];
+  for (std::size_t i = 0; i < order.size(); ++i)
+    EXPECT_EQ(lines[i + 2].find("  " + order[i].second + " "), 0u) << lines[i + 2];
   EXPECT_NE(lines[11].find("lightfield"), std::string::npos);
   EXPECT_NE(lines[11].find("not supported: lightfield shades rectangles only"), std::string::npos);
   // The error column ends where its heading does, in every row that has figures.
@@ -366,14 +378,17 @@ TEST(Report, HostileNamesStayTextAndInsideTheFolder) {
   const std::size_t begin = page.find("id=\"results\">") + 13;
   const json data = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
   EXPECT_EQ(data["scenes"][1]["question"], Hostile().scenes[1].question);
-  for (const auto& entry : fs::directory_iterator(folder.path())) EXPECT_EQ(entry.path().filename(), "report");
+  for (const auto& entry : fs::directory_iterator(folder.path()))
+    EXPECT_EQ(entry.path().filename(), "report");
   for (const char* kind : {"images", "data"}) {
     const fs::path inside = folder / "report" / kind;
     int folders = 0, files = 0;
     for (const auto& entry : fs::directory_iterator(inside)) folders += entry.is_directory() ? 1 : 0;
-    for (const auto& entry : fs::recursive_directory_iterator(inside)) files += entry.is_regular_file() ? 1 : 0;
+    for (const auto& entry : fs::recursive_directory_iterator(inside))
+      files += entry.is_regular_file() ? 1 : 0;
     EXPECT_EQ(folders, 2);
-    EXPECT_EQ(files, 20 * (kind[0] == 'i' ? 2 : 1) + (kind[0] == 'd' ? 2 : 0));  // truth and nine variants, twice; emission
+    EXPECT_EQ(files, 20 * (kind[0] == 'i' ? 2 : 1) +
+                         (kind[0] == 'd' ? 2 : 0));  // truth and nine variants, twice; emission
   }
 }
 
@@ -385,7 +400,8 @@ TEST(Report, EqualFileNamesAreToldApart) {
   results.scenes[1].variants[1].name = "a/b";
   results.scenes[1].variants[2].name = "a:b";
   WriteReport(results, folder / "report");
-  for (const char* file : {"gloss/point.exr", "gloss-2/truth.exr", "gloss-2/truth-2.exr", "gloss-2/a_b.exr", "gloss-2/a_b-2.exr"}) {
+  for (const char* file : {"gloss/point.exr", "gloss-2/truth.exr", "gloss-2/truth-2.exr", "gloss-2/a_b.exr",
+                           "gloss-2/a_b-2.exr"}) {
     EXPECT_TRUE(fs::exists(folder / "report/images" / file)) << file;
   }
 }
@@ -436,12 +452,15 @@ TEST(Report, OneUnshadedSceneAndNone) {
 // Relative differences as the page defines them, from the values in the EXRs.
 json Expected(const fs::path& report, const SceneResult& scene) {
   const auto lobe_of = [](const RadianceImage& image, const std::string& lobe, std::size_t i) {
-    return glm::dvec3(lobe == "diffuse" ? image.diffuse[i] : lobe == "specular" ? image.specular[i] : glm::vec3(0.0f)) +
+    return glm::dvec3(lobe == "diffuse"    ? image.diffuse[i]
+                      : lobe == "specular" ? image.specular[i]
+                                           : glm::vec3(0.0f)) +
            (lobe == "total" ? glm::dvec3(image.diffuse[i]) + glm::dvec3(image.specular[i]) : glm::dvec3(0.0));
   };
   const auto luminance = [](const glm::dvec3& v) { return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z; };
   json expected = json::array();
-  for (const auto& [a, b] : {std::pair("ltc", "truth"), std::pair("drobot", "hill"), std::pair("point", "truth")}) {
+  for (const auto& [a, b] :
+       {std::pair("ltc", "truth"), std::pair("drobot", "hill"), std::pair("point", "truth")}) {
     const RadianceImage image_a = ReadExr(report / "images" / scene.name / (std::string(a) + ".exr"));
     const RadianceImage image_b = ReadExr(report / "images" / scene.name / (std::string(b) + ".exr"));
     for (const std::string lobe : {"total", "diffuse", "specular"}) {
@@ -454,11 +473,17 @@ json Expected(const fs::path& report, const SceneResult& scene) {
       }
       floor *= 0.01 / lit;
       for (std::size_t i = 5; i < image_a.size(); i += 131) {
-        const glm::dvec3 va = lobe_of(image_a, lobe, i), vb = lobe_of(image_b, lobe, i), d = glm::abs(va - vb);
+        const glm::dvec3 va = lobe_of(image_a, lobe, i), vb = lobe_of(image_b, lobe, i),
+                         d = glm::abs(va - vb);
         if (va == glm::dvec3(0.0) && vb == glm::dvec3(0.0)) continue;
         const double base = std::max(luminance(vb), floor);
-        expected.push_back({{"scene", scene.name}, {"a", a}, {"b", b}, {"lobe", lobe}, {"floor", floor},
-                            {"x", i % static_cast<std::size_t>(scene.width)}, {"y", i / static_cast<std::size_t>(scene.width)},
+        expected.push_back({{"scene", scene.name},
+                            {"a", a},
+                            {"b", b},
+                            {"lobe", lobe},
+                            {"floor", floor},
+                            {"x", i % static_cast<std::size_t>(scene.width)},
+                            {"y", i / static_cast<std::size_t>(scene.width)},
                             {"signed", (luminance(va) - luminance(vb)) / base},
                             {"magnitude", std::max({d.x, d.y, d.z}) / base}});
       }
@@ -478,7 +503,8 @@ TEST(Report, WritesTheSampleForThePageTest) {
   {  // a variant that yields NaN
     VariantResult& broken = results.scenes[1].variants[1];
     auto image = std::make_shared<RadianceImage>(*broken.image);
-    for (std::size_t i = 0; i < 48; ++i) image->specular[24 * 48 + i].y = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t i = 0; i < 48; ++i)
+      image->specular[24 * 48 + i].y = std::numeric_limits<float>::quiet_NaN();
     broken.image = image;
     Measure(*results.scenes[1].truth, nullptr, &broken);
   }

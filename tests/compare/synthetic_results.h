@@ -1,5 +1,6 @@
-// Results made of analytic pictures, for the tests of the report: a sphere on a floor of rising roughness under a
-// rectangle, by midpoint sums of a few or many points. Nothing from glsl/ or scenes/ but the plain structs.
+// Results made of analytic pictures, for the tests of the report: a sphere on a floor of rising roughness
+// under a rectangle, by midpoint sums of a few or many points. Nothing from glsl/ or scenes/ but the plain
+// structs.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -40,13 +41,16 @@ inline RadianceImage Shade(const Style& style, const Flaw& flaw, int width, int 
   image.specular.assign(size, glm::vec3(0.0f));
   if (emission) emission->assign(size, glm::vec3(0.0f));
   const glm::dvec3 eye(0.0, -3.2, 1.3), forward = glm::normalize(glm::dvec3(0.0, 0.2, 0.45) - eye);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 0, 1))), up = glm::cross(right, forward);
-  const glm::dvec3 light_center(style.light_x, 1.2, style.light_z), light_normal = glm::normalize(glm::dvec3(0, -1, -0.5));
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 0, 1))),
+                   up = glm::cross(right, forward);
+  const glm::dvec3 light_center(style.light_x, 1.2, style.light_z),
+      light_normal = glm::normalize(glm::dvec3(0, -1, -0.5));
   const glm::dvec3 axis_x(1, 0, 0), axis_y = glm::cross(light_normal, axis_x);
   const glm::dvec3 sphere(-0.75, 0.1, 0.4);
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
       const double u = (2.0 * (x + 0.5) - width) / height * 0.5, v = (1.0 - 2.0 * (y + 0.5) / height) * 0.5;
       const glm::dvec3 ray = glm::normalize(forward + u * right + v * up);
       double nearest = 1e30;
@@ -81,7 +85,8 @@ inline RadianceImage Shade(const Style& style, const Flaw& flaw, int width, int 
       for (int k = 0; k < flaw.points * flaw.points; ++k) {
         const double s = (k % flaw.points + 0.5) / flaw.points * 2.0 - 1.0;
         const double t = (k / flaw.points + 0.5) / flaw.points * 2.0 - 1.0;
-        const glm::dvec3 q = light_center + s * style.half_width * axis_x + t * style.half_height * axis_y - p;
+        const glm::dvec3 q =
+            light_center + s * style.half_width * axis_x + t * style.half_height * axis_y - p;
         const double distance2 = glm::dot(q, q);
         const glm::dvec3 l = q / std::sqrt(distance2);
         const double n_dot_l = glm::dot(normal, l), n_dot_v = glm::dot(normal, to_view);
@@ -95,8 +100,10 @@ inline RadianceImage Shade(const Style& style, const Flaw& flaw, int width, int 
         const double visibility = 0.5 / (n_dot_l * std::sqrt(n_dot_v * n_dot_v * (1 - alpha2) + alpha2) +
                                          n_dot_v * std::sqrt(n_dot_l * n_dot_l * (1 - alpha2) + alpha2));
         const glm::dvec3 fresnel = f0 + (1.0 - f0) * std::pow(1.0 - glm::dot(h, to_view), 5.0);
-        diffuse += style.radiance * style.base_color * (1.0 - style.metalness) * (n_dot_l * solid_angle / std::numbers::pi);
-        if (!flaw.no_specular) specular += style.radiance * fresnel * (d * visibility * n_dot_l * solid_angle);
+        diffuse += style.radiance * style.base_color * (1.0 - style.metalness) *
+                   (n_dot_l * solid_angle / std::numbers::pi);
+        if (!flaw.no_specular)
+          specular += style.radiance * fresnel * (d * visibility * n_dot_l * solid_angle);
       }
       image.diffuse[i] = glm::vec3(diffuse * flaw.diffuse_gain);
       image.specular[i] = glm::vec3(specular * flaw.specular_gain);
@@ -109,8 +116,8 @@ struct Size {
   int width = 96, height = 72, truth_points = 12;
 };
 
-inline SceneResult MakeScene(const std::string& name, const std::string& question, const Style& style, const Size& size,
-                             bool flip = true) {
+inline SceneResult MakeScene(const std::string& name, const std::string& question, const Style& style,
+                             const Size& size, bool flip = true) {
   SceneResult scene;
   scene.name = name;
   scene.question = question;
@@ -127,7 +134,8 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
   scene.emission = emission;
   scene.truth_relative_error = 8.4e-5;
   scene.truth_seconds = 0.213;
-  for (std::size_t i = 0; i < truth->size(); ++i) scene.lit_pixels += truth->Total(i) != glm::vec3(0.0f) ? 1 : 0;
+  for (std::size_t i = 0; i < truth->size(); ++i)
+    scene.lit_pixels += truth->Total(i) != glm::vec3(0.0f) ? 1 : 0;
 
   struct Named {
     const char *name, *short_name, *summary, *citation, *note;
@@ -136,22 +144,69 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
   };
   const int n = size.truth_points;
   const std::vector<Named> all = {
-      {"point", "point", "The light as one point at its centre.", "Common ground", "One form only.", {1}, 1.0},
-      {"drobot", "drobot", "Most representative point for diffuse and specular.", "Drobot 2014", "Ours clamps the cone.",
-       {2, 1.06, 0.9}, 2.1},
-      {"drobot+cone=threshold", "drobot@published", "Most representative point for diffuse and specular.", "Drobot 2014",
-       "As published.", {2, 1.06, 1.3}, 2.2},
-      {"oat", "oat", "Spherical caps that intersect.", "Oat 2006", "The specular lobe is our extension.", {3, 0.85, 0.7}, 1.6},
-      {"hill", "hill", "LTC with the vector form factor and a proxy sphere.", "Hill & Heitz 2016", "Fitted sphere.",
-       {n - 4, 1.004, 1.01, 1.01}, 3.2},
-      {"hill+sphere=table", "hill@published", "LTC with the vector form factor and a proxy sphere.", "Hill & Heitz 2016",
-       "As published.", {n - 4, 0.99, 1.02, 1.03}, 3.4},
-      {"ltc", "ltc", "Linearly transformed cosines, exact horizon clip.", "Heitz et al. 2016; Hill & Heitz 2016",
-       "Five-cornered clip.", {n - 2, 1.0, 1.004, 1.005}, 3.9},
-      {"ltc+clip=switch+edge=rational", "ltc@published", "Linearly transformed cosines, exact horizon clip.",
-       "Heitz et al. 2016", "As published.", {n - 2, 1.0, 1.03, 1.04}, 5.6},
-      {"reference", "reference", "The truth's integrand in the shader.", "Findings", "One form only.",
-       {n, 1.00001, 0.99999}, 24.0},
+      {"point",
+       "point",
+       "The light as one point at its centre.",
+       "Common ground",
+       "One form only.",
+       {1},
+       1.0},
+      {"drobot",
+       "drobot",
+       "Most representative point for diffuse and specular.",
+       "Drobot 2014",
+       "Ours clamps the cone.",
+       {2, 1.06, 0.9},
+       2.1},
+      {"drobot+cone=threshold",
+       "drobot@published",
+       "Most representative point for diffuse and specular.",
+       "Drobot 2014",
+       "As published.",
+       {2, 1.06, 1.3},
+       2.2},
+      {"oat",
+       "oat",
+       "Spherical caps that intersect.",
+       "Oat 2006",
+       "The specular lobe is our extension.",
+       {3, 0.85, 0.7},
+       1.6},
+      {"hill",
+       "hill",
+       "LTC with the vector form factor and a proxy sphere.",
+       "Hill & Heitz 2016",
+       "Fitted sphere.",
+       {n - 4, 1.004, 1.01, 1.01},
+       3.2},
+      {"hill+sphere=table",
+       "hill@published",
+       "LTC with the vector form factor and a proxy sphere.",
+       "Hill & Heitz 2016",
+       "As published.",
+       {n - 4, 0.99, 1.02, 1.03},
+       3.4},
+      {"ltc",
+       "ltc",
+       "Linearly transformed cosines, exact horizon clip.",
+       "Heitz et al. 2016; Hill & Heitz 2016",
+       "Five-cornered clip.",
+       {n - 2, 1.0, 1.004, 1.005},
+       3.9},
+      {"ltc+clip=switch+edge=rational",
+       "ltc@published",
+       "Linearly transformed cosines, exact horizon clip.",
+       "Heitz et al. 2016",
+       "As published.",
+       {n - 2, 1.0, 1.03, 1.04},
+       5.6},
+      {"reference",
+       "reference",
+       "The truth's integrand in the shader.",
+       "Findings",
+       "One form only.",
+       {n, 1.00001, 0.99999},
+       24.0},
   };
   const std::vector<glm::vec3> total = TotalRadiance(*truth);
   const FlipReference reference(total, size.width);
@@ -162,7 +217,8 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
     variant.summary = named.summary;
     variant.citation = named.citation;
     variant.note = named.note;
-    variant.image = std::make_shared<RadianceImage>(Shade(style, named.flaw, size.width, size.height, nullptr));
+    variant.image =
+        std::make_shared<RadianceImage>(Shade(style, named.flaw, size.width, size.height, nullptr));
     Measure(*truth, flip ? &reference : nullptr, &variant);
     variant.within_truth_error = variant.total.rel_rmse < 4.0 * scene.truth_relative_error;
     variant.time.ratio_to_point = named.ratio;
@@ -195,7 +251,10 @@ inline Results MakeResults(const std::vector<SceneResult>& scenes) {
   results.command = "arealab compare gloss horizon --out report";
   results.version = "0.1.0";
   results.date = "2026-11-22T16:00:00Z";
-  results.machine = {{"cpu", "Synthetic CPU @ 2.0 GHz"}, {"cores", "2"}, {"os", "Debian GNU/Linux 12"}, {"compiler", "g++ 12.2"}};
+  results.machine = {{"cpu", "Synthetic CPU @ 2.0 GHz"},
+                     {"cores", "2"},
+                     {"os", "Debian GNU/Linux 12"},
+                     {"compiler", "g++ 12.2"}};
   results.platform = "OSMesa";
   results.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
   results.gl_version = "4.5 (Core Profile) Mesa 22.3.6";
