@@ -34,7 +34,7 @@ function percent(v, tight) {
   if (!known(v)) return "–";
   const p = 100 * v, m = Math.abs(p);
   if (m === 0) return "0";
-  if (tight) return m >= 999.5 ? "999+" : m >= 9.95 ? p.toFixed(0) : m >= 0.995 ? p.toFixed(1) : m >= 0.005 ? p.toFixed(2) : "0.00";
+  if (tight) return m >= 9950 ? `${(p / 1000).toFixed(0)}k` : m >= 999.5 ? `${(p / 1000).toFixed(1)}k` : m >= 9.95 ? p.toFixed(0) : m >= 0.995 ? p.toFixed(1) : m >= 0.005 ? p.toFixed(2) : "0.00";
   if (m >= 1e4) return p.toExponential(1).replace("e+", "e");
   return m >= 99.95 ? p.toFixed(0) : m >= 9.995 ? p.toFixed(1) : m >= 0.9995 ? p.toFixed(2) : m >= 0.0995 ? p.toFixed(3) : m >= 1e-4 ? p.toPrecision(2) : p.toExponential(1);
 }
