@@ -22,7 +22,7 @@ struct Outcome {
   std::string out;  // standard output and error together
 };
 
-Outcome Run(const std::string& arguments) {
+Outcome Arealab(const std::string& arguments) {
   const std::string command = std::string(AREALAB_PROGRAM) + " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   Outcome outcome;
@@ -66,12 +66,12 @@ class Cli : public testing::Test {
 };
 
 TEST_F(Cli, ListNamesTechniquesWithWhatEachSupportsAndScenes) {
-  const Outcome text = Run("list");
+  const Outcome text = Arealab("list");
   EXPECT_EQ(text.status, 0);
   for (const char* word : {"point", "ltc", "hill", "drobot", "oat", "reference", "lights: ", "gloss"}) {
     EXPECT_NE(text.out.find(word), std::string::npos) << word;
   }
-  const Outcome json = Run("list --json");
+  const Outcome json = Arealab("list --json");
   EXPECT_EQ(json.status, 0);
   const nlohmann::json parsed = nlohmann::json::parse(json.out);
   EXPECT_GE(parsed.at("techniques").size(), 6u);
@@ -80,20 +80,20 @@ TEST_F(Cli, ListNamesTechniquesWithWhatEachSupportsAndScenes) {
 }
 
 TEST_F(Cli, BadUseIsOneLineAndStatusTwo) {
-  ExpectRefused(Run("compare nosuchscene"), "gloss");
-  ExpectRefused(Run("compare gloss --technique ltd"), "ltc");
-  ExpectRefused(Run("compare gloss --technique ltc+clip=arch"), "arc");
-  ExpectRefused(Run("compare gloss --size 0x4"), "--size 0x4");
-  ExpectRefused(Run("compare gloss --limit rel_rms=1"), "rel_rmse");
-  ExpectRefused(Run("compare gloss --limit rel_rmse"), "METRIC=NUMBER");
-  ExpectRefused(Run("compare gloss --glsl " + Path("none")), "none");
-  ExpectRefused(Run("compare gloss --contxt egl"), "contxt");
-  ExpectRefused(Run(""), "subcommand");
+  ExpectRefused(Arealab("compare nosuchscene"), "gloss");
+  ExpectRefused(Arealab("compare gloss --technique ltd"), "ltc");
+  ExpectRefused(Arealab("compare gloss --technique ltc+clip=arch"), "arc");
+  ExpectRefused(Arealab("compare gloss --size 0x4"), "--size 0x4");
+  ExpectRefused(Arealab("compare gloss --limit rel_rms=1"), "rel_rmse");
+  ExpectRefused(Arealab("compare gloss --limit rel_rmse"), "METRIC=NUMBER");
+  ExpectRefused(Arealab("compare gloss --glsl " + Path("none")), "none");
+  ExpectRefused(Arealab("compare gloss --contxt egl"), "contxt");
+  ExpectRefused(Arealab(""), "subcommand");
 }
 
 TEST_F(Cli, CompareWritesTheReportAndHoldsLimits) {
   const std::string compare = "compare gloss --size 48x48 --out " + Path("out") + Cache() + " --technique ltc --technique point";
-  const Outcome kept = Run(compare + " --limit rel_rmse=100");
+  const Outcome kept = Arealab(compare + " --limit rel_rmse=100");
   ASSERT_EQ(kept.status, 0) << kept.out;
   EXPECT_NE(kept.out.find("index.html"), std::string::npos);
   const nlohmann::json results = ReadJson("out/results.json");
@@ -107,7 +107,7 @@ TEST_F(Cli, CompareWritesTheReportAndHoldsLimits) {
   EXPECT_LT(ltc, 0.1);
   EXPECT_GT(point, 0.1);  // a point light under a near rectangle: if it were this good, something is swapped
 
-  const Outcome exceeded = Run(compare + " --limit rel_rmse=0.05");
+  const Outcome exceeded = Arealab(compare + " --limit rel_rmse=0.05");
   EXPECT_EQ(exceeded.status, 1) << exceeded.out;
   EXPECT_NE(exceeded.out.find("gloss: point: rel_rmse"), std::string::npos) << exceeded.out;
   EXPECT_TRUE(ReadJson("out/results.json").at("scenes").at(0).at("truth").at("cached").get<bool>());
@@ -115,8 +115,8 @@ TEST_F(Cli, CompareWritesTheReportAndHoldsLimits) {
 
 TEST_F(Cli, SameInputGivesTheSameFigures) {
   const std::string compare = "compare spheres --size 40x30 --technique ltc --technique drobot";
-  ASSERT_EQ(Run(compare + " --cache " + Path("a_cache") + " --out " + Path("a")).status, 0);
-  ASSERT_EQ(Run(compare + " --cache " + Path("b_cache") + " --out " + Path("b")).status, 0);
+  ASSERT_EQ(Arealab(compare + " --cache " + Path("a_cache") + " --out " + Path("a")).status, 0);
+  ASSERT_EQ(Arealab(compare + " --cache " + Path("b_cache") + " --out " + Path("b")).status, 0);
   nlohmann::json a = ReadJson("a/results.json").at("scenes");
   nlohmann::json b = ReadJson("b/results.json").at("scenes");
   for (nlohmann::json* scenes : {&a, &b}) (*scenes).at(0).at("truth").erase("seconds");
@@ -124,12 +124,12 @@ TEST_F(Cli, SameInputGivesTheSameFigures) {
 }
 
 TEST_F(Cli, UnwritableOutputIsRefusedAndAnEarlierReportSurvives) {
-  ExpectRefused(Run("compare gloss --size 16x16 --technique point --out /dev/null/out" + Cache()), "/dev/null/out");
+  ExpectRefused(Arealab("compare gloss --size 16x16 --technique point --out /dev/null/out" + Cache()), "/dev/null/out");
   const std::string compare = "compare gloss --size 16x16 --technique point --out " + Path("out") + Cache();
-  ASSERT_EQ(Run(compare).status, 0);
+  ASSERT_EQ(Arealab(compare).status, 0);
   const auto before = fs::last_write_time(folder_ / "out/results.json");
   const std::string broken = WriteFile("broken.toml", "# What breaks?\n[camera]\nposition = [0, 0\n");
-  ExpectRefused(Run("compare " + broken + " --out " + Path("out")), "broken.toml:3");
+  ExpectRefused(Arealab("compare " + broken + " --out " + Path("out")), "broken.toml:3");
   EXPECT_EQ(fs::last_write_time(folder_ / "out/results.json"), before);
 }
 
@@ -140,7 +140,7 @@ TEST_F(Cli, ATechniqueIsOneFileTriedLive) {
             "#include \"surface.glsl\"\n"
             "Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {\n"
             "  return Radiance(surface.diffuse_albedo, vec3(0.0));\n}\n");
-  const Outcome good = Run("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out") + Cache());
+  const Outcome good = Arealab("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out") + Cache());
   EXPECT_EQ(good.status, 0) << good.out;
   EXPECT_NE(good.out.find("flat"), std::string::npos);
   WriteFile("glsl/techniques/flat.glsl",
@@ -149,7 +149,7 @@ TEST_F(Cli, ATechniqueIsOneFileTriedLive) {
             "#include \"surface.glsl\"\n"
             "Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {\n"
             "  return Radiance(surface.difuse_albedo, vec3(0.0));\n}\n");
-  const Outcome bad = Run("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out2") + Cache());
+  const Outcome bad = Arealab("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out2") + Cache());
   EXPECT_EQ(bad.status, 2);
   EXPECT_NE(bad.out.find("techniques/flat.glsl:11"), std::string::npos) << bad.out;
   EXPECT_FALSE(fs::exists(folder_ / "out2"));
@@ -176,7 +176,7 @@ TEST_F(Cli, KilledAtAnyMomentNothingIsHalfWritten) {
       EXPECT_TRUE(fs::exists(folder_ / "out/index.html"));
     }
   }
-  const Outcome last = Run("compare gloss --size 96x96 --technique ltc --technique point --out " + out + " --cache " + cache);
+  const Outcome last = Arealab("compare gloss --size 96x96 --technique ltc --technique point --out " + out + " --cache " + cache);
   EXPECT_EQ(last.status, 0) << last.out;
   EXPECT_EQ(ReadJson("out/results.json").at("scenes").size(), 1u);
 }
