@@ -69,9 +69,11 @@ LightCone DiskCone(const glm::dvec3& center, const glm::dvec3& normal, double ra
   // [ρ² − R², ρh; ρh, h²] with eigenvalues μ > 0 and −R²h²/μ; across the plane −R².
   double h = -glm::dot(center, normal);
   glm::dvec3 in_plane = center + normal * h;
+  in_plane -= normal * glm::dot(in_plane, normal);  // once more: on the axis the first difference is all rounding
   double rho = glm::length(in_plane);
   LightCone cone;
-  glm::dvec3 radial = rho > 0.0 ? in_plane / rho : AnyPerpendicular(normal);
+  glm::dvec3 radial = rho > 1e-13 * h ? in_plane / rho : AnyPerpendicular(normal);
+  radial = glm::normalize(radial - normal * glm::dot(radial, normal));
   double half = 0.5 * (rho * rho + h * h - radius * radius);
   double root = std::sqrt(half * half + radius * radius * h * h);
   double mu = half > 0.0 ? half + root : radius * radius * h * h / (root - half);
