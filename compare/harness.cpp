@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "compare/flip.h"
 #include "compare/metrics.h"
 #include "compare/timing.h"
 #include "compare/truth_cache.h"
@@ -52,20 +53,6 @@ int CountLit(const RadianceImage& image) {
   return lit;
 }
 
-std::vector<glm::vec3> Totals(const RadianceImage& image) {
-  std::vector<glm::vec3> totals(image.size());
-  for (std::size_t i = 0; i < totals.size(); ++i) totals[i] = image.Total(i);
-  return totals;
-}
-
-bool Finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-int CountNonfinite(const RadianceImage& image) {
-  int count = 0;
-  for (std::size_t i = 0; i < image.size(); ++i) count += !Finite(image.diffuse[i]) || !Finite(image.specular[i]);
-  return count;
-}
-
 VariantResult Describe(const Variant& variant, const Scene& scene) {
   VariantResult result;
   result.name = variant.Name();
@@ -78,19 +65,6 @@ VariantResult Describe(const Variant& variant, const Scene& scene) {
     result.reason = *reason;
   }
   return result;
-}
-
-void Measure(VariantResult& result, const RadianceImage& truth, const std::vector<glm::vec3>& truth_total,
-             double truth_error) {
-  const RadianceImage& image = *result.image;
-  const std::vector<glm::vec3> total = Totals(image);
-  result.nonfinite_pixels = CountNonfinite(image);
-  result.total = CompareImages(total, truth_total, truth.width);
-  result.diffuse = CompareImages(image.diffuse, truth.diffuse, truth.width);
-  result.specular = CompareImages(image.specular, truth.specular, truth.width);
-  // FLIP judges what an eye sees: the whole picture, not a lobe of it.
-  if (result.nonfinite_pixels == 0) result.total.flip = HdrFlip(total, truth_total, truth.width);
-  result.within_truth_error = result.total.rel_rmse < kTruthMargin * truth_error;
 }
 
 // Times the passes of the variants that have an image, on the scene that the renderer drew last.
@@ -110,13 +84,13 @@ void Time(const Context& context, Renderer& renderer, const std::vector<Variant>
 }
 
 // rel_rmse of every ordered pair of the variants that have an image.
-std::vector<PairResult> MeasurePairs(const std::vector<VariantResult>& variants, int width) {
+std::vector<PairResult> MeasurePairs(const std::vector<VariantResult>& variants) {
   std::vector<const VariantResult*> shown;
   std::vector<std::vector<glm::vec3>> totals;
   for (const VariantResult& variant : variants) {
     if (!variant.image) continue;
     shown.push_back(&variant);
-    totals.push_back(Totals(*variant.image));
+    totals.push_back(TotalRadiance(*variant.image));
   }
   std::vector<PairResult> pairs;
   for (const VariantResult* a : shown) {
@@ -128,7 +102,7 @@ std::vector<PairResult> MeasurePairs(const std::vector<VariantResult>& variants,
     const std::size_t others = shown.size() - 1;
     const std::size_t a = i / others;
     const std::size_t b = i % others + (i % others >= a ? 1 : 0);
-    pairs[i].rel_rmse = CompareImages(totals[a], totals[b], width).rel_rmse;
+    pairs[i].rel_rmse = RelativeRmse(totals[a], totals[b]);
   });
   return pairs;
 }
@@ -199,13 +173,14 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
            [&](double fraction) { report("times", 0.7 + 0.2 * fraction); });
     }
     report("errors", 0.9);
-    const std::vector<glm::vec3> truth_total = Totals(truth.radiance);
+    const FlipReference flip(TotalRadiance(truth.radiance), truth.radiance.width);
     tbb::parallel_for(std::size_t{0}, result.variants.size(), [&](std::size_t v) {
-      if (result.variants[v].image) {
-        Measure(result.variants[v], truth.radiance, truth_total, truth.worst_relative_error);
-      }
+      VariantResult& row = result.variants[v];
+      if (!row.image) return;
+      Measure(truth.radiance, &flip, &row);
+      row.within_truth_error = row.total.rel_rmse < kTruthMargin * truth.worst_relative_error;
     });
-    result.pairs = MeasurePairs(result.variants, result.width);
+    result.pairs = MeasurePairs(result.variants);
     results.scenes.push_back(std::move(result));
   }
   return results;
