@@ -1,7 +1,6 @@
 // One light, one shaded point: closed form factor, and the specular integrals by the rule of
-// glsl/polar_rule.glsl with Gauss nodes in batches that the compiler turns into vector code. The two options
-// let √ and max become vector instructions; no result depends on errno or on floating-point traps.
-#pragma GCC optimize("no-math-errno", "no-trapping-math")
+// glsl/polar_rule.glsl with Gauss nodes in batches that the compiler turns into vector code (without errno
+// and traps of mathematics, see compare/CMakeLists.txt: else square roots and max stay scalar).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -81,16 +80,13 @@ struct Batch {
   alignas(64) std::array<double, kSize> direction_x, along_center, origin, scale, reach, weight, sum,
       sum_grazing;
   int count = 0;
+};
 
-  void Add(double x, double along, double from, double size, double y, double share) {
-    auto i = static_cast<std::size_t>(count++);
-    direction_x[i] = x;
-    along_center[i] = along;
-    origin[i] = from;
-    scale[i] = size;
-    reach[i] = y;
-    weight[i] = share;
-  }
+// Nodes on the outline before their rays are known: the slope, ds/dt, and dt with the node's weight.
+struct OuterNodes {
+  alignas(64) std::array<double, Batch::kSize> step, slope_x, slope_y, derivative_x, derivative_y;
+  alignas(64) std::array<double, Batch::kSize> length, thickness, layer, layer_reach;
+  int count = 0;
 };
 
 struct Sums {
@@ -106,12 +102,20 @@ struct RayRule {
   int count, splits;
 };
 
-// The radial integrals of a batch; inlined into one function per instruction set.
-inline __attribute__((always_inline)) void SumRaysBody(Batch& batch, const RayRule& rule) {
+// Shadowing changes over n·l of the order of α: a panel of its own where that is less than 1/kThinLayer of
+// the way.
+constexpr double kThinLayer = 6.0;
+
+// The functions below are inlined into one caller for each instruction set.
+#define AREALAB_INLINE inline __attribute__((always_inline))
+
+// The radial integrals of a batch.
+AREALAB_INLINE void SumRays(Batch& batch, const RayRule& rule, Sums& sums) {
   int count = (batch.count + 3) & ~3;
   for (int i = batch.count; i < count; ++i) {
     auto j = static_cast<std::size_t>(i);
     batch.direction_x[j] = batch.along_center[j] = batch.origin[j] = batch.scale[j] = batch.reach[j] = 0.0;
+    batch.weight[j] = 0.0;
   }
   const double* __restrict direction_x = batch.direction_x.data();
   const double* __restrict along_center = batch.along_center.data();
@@ -142,18 +146,6 @@ inline __attribute__((always_inline)) void SumRaysBody(Batch& batch, const RayRu
       }
     }
   }
-}
-
-__attribute__((target("avx2,fma"))) void SumRaysAvx2(Batch& batch, const RayRule& rule) {
-  SumRaysBody(batch, rule);
-}
-void SumRaysPlain(Batch& batch, const RayRule& rule) {
-  SumRaysBody(batch, rule);
-}
-
-void SumRays(Batch& batch, const RayRule& rule, Sums& sums) {
-  static const bool kAvx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  (kAvx2 ? SumRaysAvx2 : SumRaysPlain)(batch, rule);
   for (int i = 0; i < batch.count; ++i) {
     auto j = static_cast<std::size_t>(i);
     sums.specular += batch.weight[j] * batch.sum[j];
@@ -163,63 +155,143 @@ void SumRays(Batch& batch, const RayRule& rule, Sums& sums) {
   batch.count = 0;
 }
 
-// Shadowing changes over n·l of the order of α: a panel of its own where that is less than 1/kThinLayer of
-// the way.
-constexpr double kThinLayer = 6.0;
+// Adds the nodes of part `split` of a panel.
+AREALAB_INLINE void AddNodes(OuterNodes& nodes, const Arc& arc, const Panel& panel, const LobeView& view,
+                             const GaussRule& rule, int count, int split, int splits) {
+  const double range = (panel.u1 - panel.u0) / splits;
+  const double middle = std::exp(panel.u0 + range * (split + 0.5));
+  const double center = panel.center, half_width = 0.5 * panel.width;
+  double* __restrict step = nodes.step.data() + nodes.count;
+  double* __restrict slope_x = nodes.slope_x.data() + nodes.count;
+  double* __restrict slope_y = nodes.slope_y.data() + nodes.count;
+  double* __restrict derivative_x = nodes.derivative_x.data() + nodes.count;
+  double* __restrict derivative_y = nodes.derivative_y.data() + nodes.count;
+  const double* __restrict x = rule.x.data();
+  const double* __restrict weight = rule.weight.data();
+  const Arc local = arc;
+  for (int k = 0; k < count; ++k) {
+    // e^δ as (e^(δ/32))^32 by Taylor's series: |δ| is below 16, so the remainder is below 1e-10, and the map
+    // need not be exact, only smooth.
+    double d = range * (x[k] - 0.5) * (1.0 / 32.0);
+    double e =
+        1.0 +
+        d * (1.0 +
+             d / 2 *
+                 (1.0 +
+                  d / 3 * (1.0 + d / 4 * (1.0 + d / 5 * (1.0 + d / 6 * (1.0 + d / 7 * (1.0 + d / 8)))))));
+    e *= e;
+    e *= e;
+    e *= e;
+    e *= e;
+    e *= e;
+    double grow = middle * e, shrink = 1.0 / grow;
+    double t = center + half_width * (grow - shrink);
+    step[k] = half_width * (grow + shrink) * range * weight[k];
+    dual::vec2 slope, derivative;
+    dual::ArcSlope(local, view, t, slope, derivative);
+    slope_x[k] = slope.x;
+    slope_y[k] = slope.y;
+    derivative_x[k] = derivative.x;
+    derivative_y[k] = derivative.y;
+  }
+  nodes.count += count;
+}
 
-Sums Integrate(const Outline& outline, const LobeView& view, const TruthLevel& level) {
-  Sums sums;
+// Makes the rays of the nodes and sums them.
+AREALAB_INLINE void FinishNodes(OuterNodes& nodes, const Outline& outline, const RayRule& rays, Sums& sums) {
+  const LobeView view = rays.view;
+  const double center_x = outline.center.x, center_y = outline.center.y, ring = outline.ring,
+               b = outline.scale;
+  const double factor = view.alpha * view.alpha / glm::pi<double>();
   Batch batch;
-  const dual::vec2 center = outline.center;
-  const double center2 = glm::dot(center, center), b = outline.scale;
+  const int count = nodes.count;
+  bool any_layer = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    double x = nodes.slope_x[i] - center_x, y = nodes.slope_y[i] - center_y;
+    double length2 = std::max(x * x + y * y, 1e-300), length = std::sqrt(length2), inv = 1.0 / length;
+    double turn =
+        (x * nodes.derivative_y[i] - y * nodes.derivative_x[i]) * inv * inv * nodes.step[i] * factor;
+    x *= inv;
+    y *= inv;
+    double end = length - ring;
+    // The layer of shadowing at the end; the cut is halfway in its logarithm.
+    double thickness =
+        dual::LayerLength(view, dual::vec2(nodes.slope_x[i], nodes.slope_y[i]), dual::vec2(x, y));
+    double part =
+        thickness * kThinLayer < end ? std::min(std::sqrt(thickness * std::max(end, 0.0)), 0.5 * end) : 0.0;
+    nodes.length[i] = length;
+    nodes.thickness[i] = thickness;
+    nodes.layer[i] = part;
+    end -= part;
+    double reach = dual::RayMapInverse(std::abs(end) / b), size = end < 0.0 ? -b : b;
+    batch.direction_x[i] = x;
+    batch.along_center[i] = center_x * x + center_y * y;
+    batch.origin[i] = ring;
+    batch.scale[i] = size;
+    batch.reach[i] = reach;
+    batch.weight[i] = turn * reach * size;
+    nodes.layer_reach[i] = turn;
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    any_layer = any_layer || nodes.layer[i] > 0.0;
+  }
+  batch.count = count;
+  if (any_layer) {
+    Batch layers;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (nodes.layer[i] > 0.0) {
+        auto j = static_cast<std::size_t>(layers.count++);
+        double reach = dual::RayMapInverse(nodes.layer[i] / nodes.thickness[i]);
+        layers.direction_x[j] = batch.direction_x[i];
+        layers.along_center[j] = batch.along_center[i];
+        layers.origin[j] = nodes.length[i];
+        layers.scale[j] = -nodes.thickness[i];
+        layers.reach[j] = reach;
+        layers.weight[j] = nodes.layer_reach[i] * reach * nodes.thickness[i];
+      }
+    }
+    SumRays(layers, rays, sums);
+  }
+  SumRays(batch, rays, sums);
+  nodes.count = 0;
+}
+
+AREALAB_INLINE Sums IntegrateBody(const Outline& outline, const LobeView& view, const TruthLevel& level) {
+  Sums sums;
+  OuterNodes nodes;
   const int radial =
       std::min(static_cast<int>(std::ceil(level.radial + level.radial_per_reach * outline.reach)), kMaxNodes);
-  const RayRule rays{view, center.x, center2, &Gauss(radial), radial, level.splits};
+  const RayRule rays{view,           outline.center.x, glm::dot(outline.center, outline.center),
+                     &Gauss(radial), radial,           level.splits};
   for (int p = 0; p < outline.panel_count; ++p) {
     const Panel& panel = outline.panels[static_cast<std::size_t>(p)];
     const Arc& arc = outline.arcs[static_cast<std::size_t>(panel.arc)];
-    const double range = panel.u1 - panel.u0;
-    const int count =
-        std::min(static_cast<int>(std::ceil(level.outer + level.outer_per_range * range)), kMaxNodes);
+    const int count = std::min(
+        static_cast<int>(std::ceil(level.outer + level.outer_per_range * (panel.u1 - panel.u0))), kMaxNodes);
     const GaussRule& rule = Gauss(count);
     for (int split = 0; split < level.splits; ++split) {
-      for (int k = 0; k < count; ++k) {
-        double u = panel.u0 + range * (split + rule.x[static_cast<std::size_t>(k)]) / level.splits;
-        double grow = std::exp(u), shrink = 1.0 / grow;
-        double t = panel.center + panel.width * 0.5 * (grow - shrink);
-        double dt = panel.width * 0.5 * (grow + shrink) * range * rule.weight[static_cast<std::size_t>(k)] /
-                    level.splits;
-        dual::vec2 slope, derivative;
-        dual::ArcSlope(arc, view, t, slope, derivative);
-        dual::vec2 offset = slope - center;
-        double length2 = std::max(glm::dot(offset, offset), 1e-300), length = std::sqrt(length2);
-        double dx = offset.x / length, dy = offset.y / length, along = center.x * dx + center.y * dy;
-        double turn = (offset.x * derivative.y - offset.y * derivative.x) / length2 * dt;
-        double share = turn * view.alpha * view.alpha / glm::pi<double>();
-        double end = length - outline.ring;
-        // The layer of shadowing at the end; the cut is halfway in its logarithm.
-        double thickness = dual::LayerLength(view, slope, dual::vec2(dx, dy));
-        if (thickness * kThinLayer < end) {
-          double part = std::min(std::sqrt(thickness * end), 0.5 * end);
-          end -= part;
-          double y = dual::RayMapInverse(part / thickness);
-          batch.Add(dx, along, length, -thickness, y, share * y * thickness);
-          if (batch.count == Batch::kSize) {
-            SumRays(batch, rays, sums);
-          }
-        }
-        double y = dual::RayMapInverse(std::abs(end) / b), size = std::copysign(b, end);
-        batch.Add(dx, along, outline.ring, size, y, share * y * size);
-        if (batch.count == Batch::kSize) {
-          SumRays(batch, rays, sums);
-        }
+      if (nodes.count + count > Batch::kSize) {
+        FinishNodes(nodes, outline, rays, sums);
       }
+      AddNodes(nodes, arc, panel, view, rule, count, split, level.splits);
     }
   }
-  if (batch.count > 0) {
-    SumRays(batch, rays, sums);
-  }
+  FinishNodes(nodes, outline, rays, sums);
   return sums;
+}
+
+__attribute__((target("avx2,fma"), flatten)) Sums IntegrateAvx2(const Outline& outline, const LobeView& view,
+                                                                const TruthLevel& level) {
+  return IntegrateBody(outline, view, level);
+}
+__attribute__((flatten)) Sums IntegratePlain(const Outline& outline, const LobeView& view,
+                                             const TruthLevel& level) {
+  return IntegrateBody(outline, view, level);
+}
+
+Sums Integrate(const Outline& outline, const LobeView& view, const TruthLevel& level) {
+  static const bool kAvx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return kAvx2 ? IntegrateAvx2(outline, view, level) : IntegratePlain(outline, view, level);
 }
 
 // Adds the great-circle arc from p to q (any lengths).
@@ -297,86 +369,102 @@ void AddPanels(Outline& outline, const LobeView& view, int index, double foot, d
   add(t1 - cut_1, t1, t1, layer_1);
 }
 
+// The outline's nearest points to the center, hence its panels; 5 samples on each arc to begin with.
 void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
   constexpr int kSamples = 5;
   constexpr int kCuts = 10, kSteps = 3;  // of halving, then of Gauss–Newton towards the nearest point
-  struct Sample {
-    dual::vec2 slope, derivative;
-  };
-  std::array<std::array<Sample, kSamples>, Outline::kMaxArcs> samples;
+  using dual::vec2;
+  const int arc_count = outline.arc_count;
+  std::array<std::array<vec2, kSamples>, Outline::kMaxArcs> samples;
   auto time = [](const Arc& arc, int i) { return arc.t0 + (arc.t1 - arc.t0) * i / (kSamples - 1); };
-  for (int a = 0; a < outline.arc_count; ++a) {
+  vec2 unused;
+  for (int a = 0; a < arc_count; ++a) {
+    const Arc& arc = outline.arcs[static_cast<std::size_t>(a)];
     for (int i = 0; i < kSamples; ++i) {
-      const Arc& arc = outline.arcs[static_cast<std::size_t>(a)];
-      Sample& sample = samples[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)];
-      dual::ArcSlope(arc, view, time(arc, i), sample.slope, sample.derivative);
+      dual::ArcSlope(arc, view, time(arc, i),
+                     samples[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)], unused);
     }
   }
-  struct Foot {
-    double t, offset, distance2;
-    Sample at;
+  struct Chord {
+    double t0, t1;
+    vec2 begin, end;
+    double part, distance2;  // where it is nearest, and how near
   };
-  // The point of an arc nearest to `to`; t + offset is the foot on the tangent there, beyond the arc where it
-  // may be.
-  auto nearest = [&](int a, const dual::vec2& to) {
+  auto chord_to = [](const vec2& to, double t0, const vec2& begin, double t1, const vec2& end) {
+    vec2 from = begin - to, along = end - begin;
+    double part = std::clamp(-glm::dot(from, along) / std::max(glm::dot(along, along), 1e-300), 0.0, 1.0);
+    vec2 at = from + along * part;
+    return Chord{t0, t1, begin, end, part, glm::dot(at, at)};
+  };
+  // The nearest chord between samples, so that a near pass between two of them is not missed.
+  auto nearest_chord = [&](int a, const vec2& to) {
     const Arc& arc = outline.arcs[static_cast<std::size_t>(a)];
-    // Begins on the nearest chord between samples, so that a near pass between two of them is not missed.
-    struct Chord {
-      double t0, t1;
-      dual::vec2 begin, end;
-      double part, distance2;
-    };
-    auto chord_to = [&](double t0, const dual::vec2& begin, double t1, const dual::vec2& end) {
-      dual::vec2 from = begin - to, along = end - begin;
-      double part = std::clamp(-glm::dot(from, along) / std::max(glm::dot(along, along), 1e-300), 0.0, 1.0);
-      dual::vec2 at = from + along * part;
-      return Chord{t0, t1, begin, end, part, glm::dot(at, at)};
-    };
+    const auto& here = samples[static_cast<std::size_t>(a)];
     Chord best{};
     for (std::size_t i = 0; i + 1 < kSamples; ++i) {
-      const auto& here = samples[static_cast<std::size_t>(a)];
-      Chord chord = chord_to(time(arc, static_cast<int>(i)), here[i].slope,
-                             time(arc, static_cast<int>(i) + 1), here[i + 1].slope);
+      int k = static_cast<int>(i);
+      Chord chord = chord_to(to, time(arc, k), here[i], time(arc, k + 1), here[i + 1]);
       best = i == 0 || chord.distance2 < best.distance2 ? chord : best;
     }
+    return best;
+  };
+  struct Foot {
+    double t, offset, distance2;
+    vec2 slope, derivative;
+  };
+  // The point of an arc nearest to `to`, to within `slack`; t + offset is the foot on the tangent there,
+  // beyond the arc where it may be.
+  auto refine = [&](int a, const vec2& to, Chord best, double slack) {
+    const Arc& arc = outline.arcs[static_cast<std::size_t>(a)];
     double low = best.t0, high = best.t1;
     Foot foot{};
     // Halves the chord while the arc runs unevenly along it.
     for (int cut = 0; cut < kCuts; ++cut) {
       foot.t = 0.5 * (best.t0 + best.t1);
-      dual::ArcSlope(arc, view, foot.t, foot.at.slope, foot.at.derivative);
-      dual::vec2 bend = foot.at.slope - 0.5 * (best.begin + best.end), along = best.end - best.begin;
-      bool even = glm::dot(bend, bend) < 0.01 * glm::dot(along, along);
-      Chord first = chord_to(best.t0, best.begin, foot.t, foot.at.slope),
-            second = chord_to(foot.t, foot.at.slope, best.t1, best.end);
+      dual::ArcSlope(arc, view, foot.t, foot.slope, foot.derivative);
+      vec2 bend = foot.slope - 0.5 * (best.begin + best.end), along = best.end - best.begin;
+      double length2 = glm::dot(along, along), bend2 = glm::dot(bend, bend);
+      bool even = bend2 < 0.01 * length2;
+      Chord first = chord_to(to, best.t0, best.begin, foot.t, foot.slope),
+            second = chord_to(to, foot.t, foot.slope, best.t1, best.end);
       best = first.distance2 <= second.distance2 ? first : second;
       if (even) {
         break;
       }
     }
     foot.t = best.t0 + best.part * (best.t1 - best.t0);
-    dual::ArcSlope(arc, view, foot.t, foot.at.slope, foot.at.derivative);
     for (int step = 0;; ++step) {
-      dual::vec2 offset = foot.at.slope - to;
-      double speed2 = std::max(glm::dot(foot.at.derivative, foot.at.derivative), 1e-300);
-      foot.offset = -glm::dot(offset, foot.at.derivative) / speed2;
+      dual::ArcSlope(arc, view, foot.t, foot.slope, foot.derivative);
+      vec2 offset = foot.slope - to;
+      double speed2 = std::max(glm::dot(foot.derivative, foot.derivative), 1e-300);
+      foot.offset = -glm::dot(offset, foot.derivative) / speed2;
       foot.distance2 = glm::dot(offset, offset);
-      double next = std::clamp(foot.t + foot.offset, low, high);
-      if (step == kSteps || next == foot.t) {
+      double next = std::clamp(foot.t + foot.offset, low, high), move = next - foot.t;
+      if (step == kSteps || move * move * speed2 < slack * slack) {
         return foot;
       }
       foot.t = next;
-      dual::ArcSlope(arc, view, foot.t, foot.at.slope, foot.at.derivative);
     }
   };
-  outline.center = dual::vec2(0.0);
+  outline.center = vec2(0.0);
   if (!mirror_inside) {
+    std::array<Chord, Outline::kMaxArcs> chords;
     double least = std::numeric_limits<double>::max();
-    for (int a = 0; a < outline.arc_count; ++a) {
-      Foot foot = nearest(a, dual::vec2(0.0));
-      if (foot.distance2 < least) {
-        least = foot.distance2;
-        outline.center = foot.at.slope;
+    for (int a = 0; a < arc_count; ++a) {
+      chords[static_cast<std::size_t>(a)] = nearest_chord(a, vec2(0.0));
+      least = std::min(least, chords[static_cast<std::size_t>(a)].distance2);
+    }
+    // Arcs whose chords are more than twice as far can hardly be nearest, and the center need not be.
+    double bound = 4.0 * least + view.alpha * view.alpha;
+    least = std::numeric_limits<double>::max();
+    for (int a = 0; a < arc_count; ++a) {
+      const Chord& chord = chords[static_cast<std::size_t>(a)];
+      if (chord.distance2 <= bound) {
+        Foot foot = refine(a, vec2(0.0), chord, 0.01 * view.alpha);
+        if (foot.distance2 < least) {
+          least = foot.distance2;
+          outline.center = foot.slope;
+        }
       }
     }
   }
@@ -386,9 +474,9 @@ void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
   double center2 = glm::dot(outline.center, outline.center);
   bool over_peak = false;
   if (center2 > 0.25 * view.alpha * view.alpha) {
-    for (int a = 0; a < outline.arc_count && !over_peak; ++a) {
-      for (const Sample& sample : samples[static_cast<std::size_t>(a)]) {
-        dual::vec2 ray = sample.slope - outline.center;
+    for (int a = 0; a < arc_count && !over_peak; ++a) {
+      for (const vec2& sample : samples[static_cast<std::size_t>(a)]) {
+        vec2 ray = sample - outline.center;
         double length2 = std::max(glm::dot(ray, ray), 1e-300), back = -glm::dot(ray, outline.center);
         over_peak = over_peak || (back > 0.0 && back < length2 && back * back > 0.75 * center2 * length2);
       }
@@ -396,16 +484,16 @@ void MakePanels(Outline& outline, const LobeView& view, bool mirror_inside) {
   }
   if (over_peak) {
     outline.ring = std::sqrt(center2);
-    outline.center = dual::vec2(0.0);
+    outline.center = vec2(0.0);
   }
   double farthest2 = 0.0;
-  for (int a = 0; a < outline.arc_count; ++a) {
-    for (const Sample& sample : samples[static_cast<std::size_t>(a)]) {
-      dual::vec2 offset = sample.slope - outline.center;
+  for (int a = 0; a < arc_count; ++a) {
+    for (const vec2& sample : samples[static_cast<std::size_t>(a)]) {
+      vec2 offset = sample - outline.center;
       farthest2 = std::max(farthest2, glm::dot(offset, offset));
     }
-    Foot foot = nearest(a, outline.center);
-    double speed2 = std::max(glm::dot(foot.at.derivative, foot.at.derivative), 1e-300);
+    Foot foot = refine(a, outline.center, nearest_chord(a, outline.center), 0.02 * outline.scale);
+    double speed2 = std::max(glm::dot(foot.derivative, foot.derivative), 1e-300);
     double along = foot.offset * foot.offset * speed2;
     double across = std::max(foot.distance2 - along, 0.0);
     // Rays from a ring leave a pole where the outline's continuation meets 0.
