@@ -21,7 +21,7 @@ namespace arealab {
 namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
-constexpr std::uint64_t kVersion = 3;
+constexpr std::uint64_t kVersion = 4;
 constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
 
 // FNV-1a over 64-bit words, in two lanes that start apart and turn differently; not against malice.

@@ -102,10 +102,6 @@ struct RayRule {
   int count, splits;
 };
 
-// Shadowing changes over n·l of the order of α: a panel of its own where that is less than 1/kThinLayer of
-// the way.
-constexpr double kThinLayer = 6.0;
-
 // The functions below are inlined into one caller for each instruction set.
 #define AREALAB_INLINE inline __attribute__((always_inline))
 
@@ -217,8 +213,9 @@ AREALAB_INLINE void FinishNodes(OuterNodes& nodes, const Outline& outline, const
     // The layer of shadowing at the end; the cut is halfway in its logarithm.
     double thickness =
         dual::LayerLength(view, dual::vec2(nodes.slope_x[i], nodes.slope_y[i]), dual::vec2(x, y));
-    double part =
-        thickness * kThinLayer < end ? std::min(std::sqrt(thickness * std::max(end, 0.0)), 0.5 * end) : 0.0;
+    double part = thickness * dual::kThinLayer < end
+                      ? std::min(std::sqrt(thickness * std::max(end, 0.0)), 0.5 * end)
+                      : 0.0;
     nodes.length[i] = length;
     nodes.thickness[i] = thickness;
     nodes.layer[i] = part;
@@ -350,8 +347,8 @@ void AddPanels(Outline& outline, const LobeView& view, int index, double foot, d
   // A layer of shadowing at an end that comes down to the horizon, or the tip of a thin outline at t = 0.
   auto crowd = [&](double end, double size) {
     double spacing = std::sqrt(width * width + (end - foot) * (end - foot));
-    return size * kThinLayer < std::min(spacing, 2.0 * half) ? std::min(std::sqrt(size * spacing), half)
-                                                             : 0.0;
+    return size * dual::kThinLayer < std::min(spacing, 2.0 * half) ? std::min(std::sqrt(size * spacing), half)
+                                                                   : 0.0;
   };
   double height, rise;
   dual::ArcHeight(arc, t0, height, rise);
@@ -514,7 +511,8 @@ const std::array<TruthLevel, kTruthLevelCount>& TruthLevels() {
                                                                    {7.0, 2.5, 7.0, 8.0, 1},
                                                                    {9.0, 3.0, 10.0, 12.0, 1},
                                                                    {9.0, 3.0, 10.0, 12.0, 2},
-                                                                   {12.0, 3.5, 12.0, 14.0, 3}}};
+                                                                   {12.0, 3.5, 12.0, 14.0, 3},
+                                                                   {12.0, 3.5, 12.0, 14.0, 8}}};
   return levels;
 }
 

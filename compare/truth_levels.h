@@ -14,7 +14,7 @@ struct TruthLevel {
   int splits;                       // every panel and every ray is cut into this many equal parts
 };
 
-constexpr int kTruthLevelCount = 8;
+constexpr int kTruthLevelCount = 9;
 const std::array<TruthLevel, kTruthLevelCount>& TruthLevels();
 
 // IntegrateLight with one level and no check; the error members stay 0.

@@ -15,6 +15,10 @@
 //   that crowds towards that end.
 #include "brdf.glsl"
 
+// A layer or a tip gets a panel of its own where it is thinner than 1/kThinLayer of the way. At 6 instead of 4 ordinary
+// lights near the horizon exceed the truth's tolerance twice as often; at 3 little more is gained.
+const float kThinLayer = 4.0;
+
 struct LobeView {
   float sin_v;  // ≥ 0
   float cos_v;  // > 0

@@ -19,8 +19,6 @@ choices = [
 #include "gauss_nodes.glsl"
 #include "outline.glsl"
 
-// Shadowing changes over n·l of the order of α: a panel of its own where that is less than 1/kThinLayer of the way.
-const float kThinLayer = 6.0;
 // Half the nodes do where a ray's y or a panel's range of it is shorter: Gauss's error falls with the stretch's 2N-th power.
 const float kShortReach = 0.15;
 const float kShortPanel = 0.3;
