@@ -229,10 +229,14 @@ void Renderer::Draw(const Variant& variant, Precision precision, const std::map<
   if (impl_->light_count == 0) {
     impl_->Black();
   } else {
-    Impl::Pass& pass = impl_->passes[{variant.Name(), precision}];
-    if (pass.program == nullptr) pass = impl_->MakePass(variant, precision);
-    impl_->SetKnobs(pass, variant, knobs);
-    impl_->DrawPass(pass);
+    const std::pair key{variant.Name(), precision};
+    auto found = impl_->passes.find(key);
+    if (found == impl_->passes.end()) {
+      Impl::Pass pass = impl_->MakePass(variant, precision);  // before it has a place: making one may clear the others
+      found = impl_->passes.emplace(key, std::move(pass)).first;
+    }
+    impl_->SetKnobs(found->second, variant, knobs);
+    impl_->DrawPass(found->second);
   }
   impl_->gl.Finish();
 }
