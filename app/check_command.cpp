@@ -22,7 +22,7 @@ struct CheckArguments {
   bool update = false;
 };
 
-std::string Option(const char* name, const std::string& value) {
+std::string ShellArgument(const char* name, const std::string& value) {
   return fmt::format(" {} '{}'", name, value);
 }
 
@@ -73,8 +73,8 @@ int RunCheck(const CheckArguments& arguments) {
     return 0;
   }
   std::string repeated;  // what every case's rerun needs
-  if (arguments.golden != AREALAB_GOLDEN_DIR) repeated += Option("--golden", arguments.golden);
-  if (!arguments.common.glsl.empty()) repeated += Option("--glsl", arguments.common.glsl);
+  if (arguments.golden != AREALAB_GOLDEN_DIR) repeated += ShellArgument("--golden", arguments.golden);
+  if (!arguments.common.glsl.empty()) repeated += ShellArgument("--glsl", arguments.common.glsl);
   if (!arguments.common.context.empty()) repeated += " --context " + arguments.common.context;
   WriteCheckPage(result, "arealab check", repeated, page);
   const auto failed = std::count_if(result.cases.begin(), result.cases.end(),
