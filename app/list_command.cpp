@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -11,14 +10,6 @@ namespace arealab {
 namespace {
 
 using nlohmann::ordered_json;
-
-// The question stands in a scene's first line, so that listing reads no mesh.
-std::string Question(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line.substr(std::min(line.find_first_not_of("# \t"), line.size()));
-}
 
 std::vector<std::string> ShapeNames(const Technique& technique) {
   std::vector<std::string> names;
@@ -77,7 +68,7 @@ void PrintText(const Context& context, const std::vector<Technique>& techniques)
     if (published != technique.name) fmt::print("  {:<11} {}@published = {}\n", "", technique.name, published);
   }
   fmt::print("\nscenes\n");
-  for (const auto& file : BuiltInScenes()) fmt::print("  {:<11} {}\n", file.stem().string(), Question(file));
+  for (const auto& file : BuiltInScenes()) fmt::print("  {:<11} {}\n", file.stem().string(), ReadQuestion(file));
 }
 
 void PrintJson(const Context& context, const std::vector<Technique>& techniques) {
@@ -90,7 +81,7 @@ void PrintJson(const Context& context, const std::vector<Technique>& techniques)
   for (const Technique& technique : techniques) json["techniques"].push_back(AsJson(technique));
   json["scenes"] = ordered_json::array();
   for (const auto& file : BuiltInScenes()) {
-    json["scenes"].push_back({{"name", file.stem().string()}, {"question", Question(file)}});
+    json["scenes"].push_back({{"name", file.stem().string()}, {"question", ReadQuestion(file)}});
   }
   fmt::print("{}\n", json.dump(2));
 }

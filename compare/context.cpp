@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <glad/gl.h>
 
 #include <cstdlib>
 
@@ -32,6 +33,18 @@ void* Library::Symbol(const char* name) const {
 }
 
 }  // namespace contexts
+
+Context::Context() : gl_(std::make_unique<GladGLContext>()) {}
+Context::~Context() = default;
+
+void Context::Load(void (*(*get_proc_address)(const char*))()) {
+  MakeCurrent();
+  if (gladLoadGLContext(gl_.get(), get_proc_address) == 0) {
+    throw contexts::Unavailable("its functions do not load");
+  }
+  renderer_ = reinterpret_cast<const char*>(gl_->GetString(GL_RENDERER));
+  version_ = reinterpret_cast<const char*>(gl_->GetString(GL_VERSION));
+}
 
 bool Context::software() const {
   for (const char* name : {"llvmpipe", "softpipe", "swrast", "SWR", "Software"}) {

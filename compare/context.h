@@ -14,11 +14,11 @@ enum class ContextKind { kOsmesa, kEgl };
 // Not for use by two threads at once; a context is current on one thread at a time.
 class Context {
  public:
-  virtual ~Context() = default;
+  virtual ~Context();
   virtual void MakeCurrent() = 0;  // releases whichever Context is current on this thread first
   virtual void Release() = 0;      // makes no context current on this thread
   virtual ContextKind kind() const = 0;
-  virtual const GladGLContext& gl() const = 0;
+  const GladGLContext& gl() const { return *gl_; }
 
   // "OSMesa" or "EGL device" or "EGL surfaceless"; GL_RENDERER; GL_VERSION; whether a CPU draws (llvmpipe,
   // softpipe, swrast). renderer() and version() are remembered from creation: the context need not be
@@ -29,6 +29,13 @@ class Context {
   bool software() const;
 
  protected:
+  Context();
+  // Makes the context current, loads its functions by `get_proc_address` and remembers its names. Throws
+  // where that fails; the platform's own part is then still to be destroyed.
+  void Load(void (*(*get_proc_address)(const char*))());
+
+ private:
+  std::unique_ptr<GladGLContext> gl_;
   std::string renderer_;
   std::string version_;
 };

@@ -102,11 +102,7 @@ class EglContext : public Context {
     context_ = functions_.create_context(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
     if (context_ == EGL_NO_CONTEXT) throw Unavailable("it makes no OpenGL 4.5 core context");
     try {
-      MakeCurrent();
-      if (gladLoadGLContext(&gl_, functions_.get_proc_address) == 0)
-        throw Unavailable("its functions do not load");
-      renderer_ = reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER));
-      version_ = reinterpret_cast<const char*>(gl_.GetString(GL_VERSION));
+      Load(functions_.get_proc_address);
     } catch (...) {
       Destroy();
       throw;
@@ -133,7 +129,6 @@ class EglContext : public Context {
   }
 
   ContextKind kind() const override { return ContextKind::kEgl; }
-  const GladGLContext& gl() const override { return gl_; }
   std::string platform() const override { return platform_; }
 
  private:
@@ -146,7 +141,6 @@ class EglContext : public Context {
   DisplayUse display_;
   std::string platform_;
   EGLContext context_ = EGL_NO_CONTEXT;
-  GladGLContext gl_{};
 };
 
 struct Device {

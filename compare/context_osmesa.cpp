@@ -37,11 +37,7 @@ class OsmesaContext : public Context {
     context_ = functions_.create(attributes, nullptr);
     if (context_ == nullptr) throw Unavailable("it makes no OpenGL 4.5 core context");
     try {
-      MakeCurrent();
-      if (gladLoadGLContext(&gl_, functions_.get_proc_address) == 0)
-        throw Unavailable("its functions do not load");
-      renderer_ = reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER));
-      version_ = reinterpret_cast<const char*>(gl_.GetString(GL_VERSION));
+      Load(functions_.get_proc_address);
     } catch (...) {
       Destroy();
       throw;
@@ -67,7 +63,6 @@ class OsmesaContext : public Context {
   }
 
   ContextKind kind() const override { return ContextKind::kOsmesa; }
-  const GladGLContext& gl() const override { return gl_; }
   std::string platform() const override { return "OSMesa"; }
 
  private:
@@ -79,7 +74,6 @@ class OsmesaContext : public Context {
   Functions functions_;
   OSMesaContext context_ = nullptr;
   std::array<GLubyte, 4> pixel_{};  // the default framebuffer, which nobody draws to
-  GladGLContext gl_{};
 };
 
 }  // namespace

@@ -178,6 +178,10 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
       VariantResult& row = result.variants[v];
       if (!row.image) return;
       Measure(truth.radiance, &flip, &row);
+      // A lobe that a technique does not claim has no figure, nor has the sum.
+      const Technique& technique = *options.variants[v].technique;
+      if (!technique.diffuse) row.diffuse = row.total = {};
+      if (!technique.specular) row.specular = row.total = {};
       row.within_truth_error = row.total.rel_rmse < kTruthMargin * truth.worst_relative_error;
     });
     result.pairs = MeasurePairs(result.variants);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "glsl/effects.h"
 #include "glsl/nearest.h"
 #include "scenes/error.h"
 
@@ -84,6 +85,18 @@ std::string ShapeList(const std::vector<LightShape>& shapes) {
   }
   return list;
 }
+
+// What a scene may call for of a technique beside shapes and lobes, and how to say that it lacks it. (The loop over many
+// lights is the lighting pass's own.)
+struct Need {
+  std::string_view define;
+  std::string_view effect;
+  const char* what;
+};
+constexpr Need kNeeds[] = {
+    {"EFFECT_TWO_SIDED", "two_sided", "two-sided lights; the scene has one"},
+    {"EFFECT_FRESNEL", "fresnel", "a Fresnel term; the scene's materials reflect less than all light"},
+};
 
 }  // namespace
 
@@ -189,6 +202,15 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
         light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light \"{}\"", light.name);
     return fmt::format("{} shades {}; {} is a {}", variant.technique->name, ShapeList(shapes), who,
                        Name(light.shape));
+  }
+  const Technique& technique = *variant.technique;
+  for (const auto& [define, on] : SceneEffects(scene)) {
+    if (on == 0) continue;
+    const auto need = std::ranges::find(kNeeds, define, &Need::define);
+    if (need == std::end(kNeeds)) continue;
+    if (std::ranges::find(technique.effects, need->effect) == technique.effects.end()) {
+      return fmt::format("{} does not take {}", technique.name, need->what);
+    }
   }
   return std::nullopt;
 }

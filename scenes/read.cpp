@@ -254,6 +254,15 @@ glm::dvec3 Dunes(double x, double y, double wavelength, double amplitude) {
   return result;
 }
 
+// The first line where it is a comment, else nothing.
+std::string Question(std::string line) {
+  line = line.substr(0, line.find('\n'));
+  if (line.empty() || line[0] != '#') return "";
+  const auto begin = line.find_first_not_of("# \t");
+  const auto end = line.find_last_not_of(" \t\r");
+  return begin == std::string::npos ? "" : line.substr(begin, end + 1 - begin);
+}
+
 class SceneReader {
  public:
   explicit SceneReader(const fs::path& file)
@@ -305,15 +314,6 @@ class SceneReader {
     std::ostringstream text;
     text << stream.rdbuf();
     return text.str();
-  }
-
-  // The first line where it is a comment, else nothing.
-  static std::string Question(const std::string& text) {
-    std::string line = text.substr(0, text.find('\n'));
-    if (line.empty() || line[0] != '#') return "";
-    const auto begin = line.find_first_not_of("# \t");
-    const auto end = line.find_last_not_of(" \t\r");
-    return begin == std::string::npos ? "" : line.substr(begin, end + 1 - begin);
   }
 
   // The tables of an array of tables, each titled "[[key]] 'name'" or "[[key]]".
@@ -780,6 +780,13 @@ class SceneReader {
 };
 
 }  // namespace
+
+std::string ReadQuestion(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return Question(std::move(line));
+}
 
 Scene LoadScene(const fs::path& file) {
   return SceneReader(file).Read();

@@ -93,6 +93,9 @@ struct Scene {
 // Reads and checks a scene file. Throws InputError ("file:line: what; expected what").
 Scene LoadScene(const std::filesystem::path& file);
 
+// A scene file's question alone, without reading the rest; empty where the file has no first line.
+std::string ReadQuestion(const std::filesystem::path& file);
+
 // The scene files that come with AreaLab, in the order of the report. The environment variable AREALAB_SCENES
 // names another folder of scenes.
 std::vector<std::filesystem::path> BuiltInScenes();

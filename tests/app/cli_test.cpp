@@ -136,22 +136,28 @@ TEST_F(Cli, UnwritableOutputIsRefusedAndAnEarlierReportSurvives) {
 TEST_F(Cli, ATechniqueIsOneFileTriedLive) {
   WriteFile("glsl/techniques/flat.glsl",
             "/*---\nsummary = \"constant\"\ncitation = \"none\"\nauthor_note = \"none\"\n"
-            "shapes = [\"rectangle\", \"disk\", \"sphere\"]\nlobes = [\"diffuse\", \"specular\"]\nbrdfs = [\"ggx\"]\n---*/\n"
+            "shapes = [\"rectangle\", \"disk\", \"sphere\"]\nlobes = [\"diffuse\"]\nbrdfs = [\"ggx\"]\neffects = [\"fresnel\"]\n---*/\n"
             "#include \"surface.glsl\"\n"
             "Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {\n"
             "  return Radiance(surface.diffuse_albedo, vec3(0.0));\n}\n");
   const Outcome good = Arealab("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out") + Cache());
   EXPECT_EQ(good.status, 0) << good.out;
   EXPECT_NE(good.out.find("flat"), std::string::npos);
+  // It claims one lobe: that one is measured, the other and the sum have no figure.
+  std::ifstream results(folder_ / "out/results.json");
+  const nlohmann::json error = nlohmann::json::parse(results)["scenes"][0]["variants"][0]["error"];
+  EXPECT_TRUE(error["diffuse"]["rel_rmse"].is_number());
+  EXPECT_TRUE(error["specular"]["rel_rmse"].is_null());
+  EXPECT_TRUE(error["total"]["rel_rmse"].is_null());
   WriteFile("glsl/techniques/flat.glsl",
             "/*---\nsummary = \"constant\"\ncitation = \"none\"\nauthor_note = \"none\"\n"
-            "shapes = [\"rectangle\"]\nlobes = [\"diffuse\", \"specular\"]\nbrdfs = [\"ggx\"]\n---*/\n"
+            "shapes = [\"rectangle\"]\nlobes = [\"diffuse\", \"specular\"]\nbrdfs = [\"ggx\"]\neffects = [\"fresnel\"]\n---*/\n"
             "#include \"surface.glsl\"\n"
             "Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {\n"
             "  return Radiance(surface.difuse_albedo, vec3(0.0));\n}\n");
   const Outcome bad = Arealab("compare gloss --size 16x16 --technique flat --glsl " + Path("glsl") + " --out " + Path("out2") + Cache());
   EXPECT_EQ(bad.status, 2);
-  EXPECT_NE(bad.out.find("techniques/flat.glsl:11"), std::string::npos) << bad.out;
+  EXPECT_NE(bad.out.find("techniques/flat.glsl:12"), std::string::npos) << bad.out;
   EXPECT_FALSE(fs::exists(folder_ / "out2"));
 }
 

@@ -24,11 +24,13 @@ const std::vector<Technique>& Techniques() {
     Technique ltc;
     ltc.name = "ltc";
     ltc.shapes = {LightShape::kRectangle};
+    ltc.effects = {"fresnel"};
     ltc.options = {MakeOption("edge", {"half", "acos"}), MakeOption("clip", {"arc", "switch", "none"})};
     ltc.published = {{"edge", "acos"}, {"clip", "switch"}};
     Technique plain;
     plain.name = "plain";
     plain.shapes = {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere};
+    plain.effects = {"two_sided"};
     Technique same;
     same.name = "same";
     same.shapes = {LightShape::kDisk, LightShape::kSphere};
@@ -126,8 +128,12 @@ TEST(Variant, WrongNamesAreRefusedWithWhatExists) {
             "TECHNIQUE[@published][+OPTION=CHOICE]…");
 }
 
+// Lights a perfect mirror, which has no Fresnel term.
 Scene SceneWith(LightShape shape, const std::string& name) {
   Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].base_color = glm::vec3(1.0f);
+  scene.materials[0].metalness = 1.0f;
   scene.lights.resize(2);
   scene.lights[0].shape = LightShape::kRectangle;
   scene.lights[1].shape = shape;
@@ -144,6 +150,18 @@ TEST(Variant, UnsupportedShapesAreNamedInASentence) {
   EXPECT_EQ(WhyUnsupported(Parse("same"), SceneWith(LightShape::kDisk, "")),
             "same shades disks and spheres; light 1 is a rectangle");
   EXPECT_EQ(WhyUnsupported(Parse("plain"), SceneWith(LightShape::kSphere, "lamp")), std::nullopt);
+}
+
+TEST(Variant, UnsupportedEffectsAreNamedInASentence) {
+  Scene scene = SceneWith(LightShape::kRectangle, "lamp");
+  scene.lights[0].two_sided = true;
+  EXPECT_EQ(WhyUnsupported(Parse("ltc"), scene), "ltc does not take two-sided lights; the scene has one");
+  EXPECT_EQ(WhyUnsupported(Parse("plain"), scene), std::nullopt);
+  scene.lights.erase(scene.lights.begin());
+  scene.materials[0].base_color = glm::vec3(0.5f);
+  EXPECT_EQ(WhyUnsupported(Parse("ltc"), scene), std::nullopt);
+  EXPECT_EQ(WhyUnsupported(Parse("plain"), scene),
+            "plain does not take a Fresnel term; the scene's materials reflect less than all light");
 }
 
 }  // namespace
