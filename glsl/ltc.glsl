@@ -10,6 +10,7 @@ struct ShadingFrame {
   vec3 bitangent;  // unit
   vec3 normal;     // unit
   float n_dot_v;   // at least kMinViewCosine
+  float sine;      // of the view angle, from the tangent's own length: near the normal n·v has no digits left of it
 };
 
 // cos 89.95°: the last row of the published tables.
@@ -21,6 +22,7 @@ ShadingFrame MakeShadingFrame(vec3 normal, vec3 to_view) {
   float cosine = dot(normal, to_view);
   vec3 tangent = to_view - normal * cosine;
   float length2 = dot(tangent, tangent);
+  frame.sine = min(sqrt(length2), 1.0);
   // Within 1e-4 rad of the normal the difference is rounding, and lobes are round: any tangent serves.
   if (length2 < 1e-8) {
     vec3 axis = abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
@@ -37,15 +39,20 @@ ShadingFrame MakeShadingFrame(vec3 normal, vec3 to_view) {
 // Texture coordinates in a table of 64 × 64 nodes whose node i stands for i/63.
 vec2 TableCoordinates(float x, float y) { return vec2(x * (63.0 / 64.0) + 0.5 / 64.0, y * (63.0 / 64.0) + 0.5 / 64.0); }
 
+// √(1 − c), from the sine: 1 − c = s²/(1 + c).
+float RootOfVersine(float n_dot_v, float sine) { return sine * inversesqrt(1.0 + n_dot_v); }
+
 // For an axis of view angles that ends at 89°: √((1 − c)/(1 − cos 89°)), clamped to 1.
-float ViewPositionTo89(float n_dot_v) { return min(sqrt((1.0 - n_dot_v) * (1.0 / 0.98254759356)), 1.0); }
+float ViewPositionTo89(float n_dot_v, float sine) { return min(RootOfVersine(n_dot_v, sine) * sqrt(1.0 / 0.98254759356), 1.0); }
 
 // M⁻¹ from M⁻¹·R in the mirror frame, R turning the normal onto the mirrored view, by the pixel's own angle (ours). Sharp
 // lobes hardly move in that frame from one view angle to the next, and interpolation between them errs little.
-vec4 FromMirrorFrame(vec4 stored, float n_dot_v) {
-  float sine = sqrt(1.0 - n_dot_v * n_dot_v);
+vec4 FromMirrorFrame(vec4 stored, float n_dot_v, float sine) {
   return stored * n_dot_v + vec4(-stored.z, -stored.w, stored.x, stored.y) * sine;
 }
 
 // M⁻¹ v.
 vec3 LtcTransform(vec4 m, vec3 v) { return vec3(m.x * v.x + m.z * v.z, v.y, m.y * v.x + m.w * v.z); }
+
+// M v, but for a positive factor, by the adjugate of M⁻¹.
+vec3 LtcUndo(vec4 m, vec3 v) { return vec3(m.w * v.x - m.z * v.z, (m.x * m.w - m.y * m.z) * v.y, m.x * v.z - m.y * v.x); }

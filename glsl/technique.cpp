@@ -91,6 +91,7 @@ class HeaderReader {
     ReadSupport(root, technique);
     for (const toml::table* table : Tables(root, "option")) ReadOption(*table, technique);
     CheckDefines(root, technique);
+    CheckNeeds(root, technique);
     for (const toml::table* table : Tables(root, "knob")) ReadKnob(*table, technique);
     ReadTables(root, technique);
     ReadPublished(root, technique);
@@ -276,13 +277,20 @@ class HeaderReader {
     technique.options.push_back(std::move(option));
   }
 
-  // ["arc", "branchless with the closing arc"], of an option that has its choices so far.
+  // ["arc", "branchless with the closing arc"], of an option that has its choices so far. A third element
+  // names what the choice needs of other options: { fit = "polygon" }.
   Choice ReadChoice(const toml::node& node, const Option& option) const {
     const toml::array* pair = node.as_array();
-    if (!pair || pair->size() != 2) {
-      Fail(LineOf(node), "a choice is not a pair", "choices = [[\"name\", \"one line\"], …]");
+    if (!pair || pair->size() < 2 || pair->size() > 3 || (pair->size() == 3 && !(*pair)[2].is_table())) {
+      Fail(LineOf(node), "a choice is not a pair",
+           "choices = [[\"name\", \"one line\"], …], a third element { option = \"choice\" } where it needs "
+           "another");
     }
-    Choice choice{Identifier((*pair)[0], "choice"), Text((*pair)[1], "the choice's line")};
+    Choice choice{Identifier((*pair)[0], "choice"), Text((*pair)[1], "the choice's line"), {}};
+    if (pair->size() == 3) {
+      for (const auto& [key, needed] : *(*pair)[2].as_table())
+        choice.needs[std::string(key.str())] = Identifier(needed, key.str());
+    }
     for (const Choice& earlier : option.choices) {
       if (earlier.name == choice.name) {
         Fail(LineOf(node), fmt::format("choice \"{}\" stands twice", choice.name), "each name once");
@@ -295,6 +303,30 @@ class HeaderReader {
            fmt::format("a file in glsl/{}/ for each choice", option.name));
     }
     return choice;
+  }
+
+  // What a choice needs is another option's choice, and the default needs nothing that is not the default.
+  void CheckNeeds(const toml::table& root, const Technique& technique) const {
+    const auto tables = Tables(root, "option");
+    for (std::size_t i = 0; i < technique.options.size(); ++i) {
+      for (const Choice& choice : technique.options[i].choices) {
+        const bool is_default = &choice == &technique.options[i].choices.front();
+        for (const auto& [name, needed] : choice.needs) {
+          const int line = LineOf(*tables[i]->get("choices"));
+          const Option& other = FindOption(technique, name, line);
+          std::vector<std::string> names;
+          for (const Choice& known : other.choices) names.push_back(known.name);
+          if (std::find(names.begin(), names.end(), needed) == names.end()) {
+            Fail(line, fmt::format("choice \"{}\" needs unknown {} \"{}\"", choice.name, name, needed),
+                 ExpectedNames(needed, names));
+          }
+          if (is_default && needed != names.front()) {
+            Fail(line, fmt::format("default \"{}\" needs {} \"{}\"", choice.name, name, needed),
+                 "what the other options' defaults are");
+          }
+        }
+      }
+    }
   }
 
   // No two choices may lead to one define: option "a", choice "b_c" and option "a_b", choice "c".

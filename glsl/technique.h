@@ -1,4 +1,5 @@
-// What a technique file says of itself in its header comment (TOML), and the registry read from those headers.
+// What a technique file says of itself in its header comment (TOML), and the registry read from those
+// headers.
 #pragma once
 
 #include <map>
@@ -11,12 +12,14 @@
 namespace arealab {
 
 struct Choice {
-  std::string name;     // "arc"
-  std::string summary;  // one line
+  std::string name;                               // "arc"
+  std::string summary;                            // one line
+  std::map<std::string, std::string> needs = {};  // other options and the choices of theirs that it goes with
 };
 
-// A compile-time choice. Where the folder glsl/NAME/ exists, each choice is a file in it and `#include "NAME"` resolves
-// to the chosen one; in every case the host emits `#define NAME_CHOICE 0|1` (upper case) for all choices.
+// A compile-time choice. Where the folder glsl/NAME/ exists, each choice is a file in it and `#include
+// "NAME"` resolves to the chosen one; in every case the host emits `#define NAME_CHOICE 0|1` (upper case) for
+// all choices.
 struct Option {
   std::string name;  // "clip"
   std::string summary;
@@ -29,7 +32,8 @@ struct Knob {
   double initial = 0.0, min = 0.0, max = 1.0;
 };
 
-// A texture that the technique samples: `uniform sampler2D table_NAME`, loaded from glsl/tables/FILE, in which
+// A texture that the technique samples: `uniform sampler2D table_NAME`, loaded from glsl/tables/FILE, in
+// which
 // "{option}" stands for that option's choice.
 struct Table {
   std::string name;
@@ -37,20 +41,22 @@ struct Table {
 };
 
 struct Technique {
-  std::string name;      // the file's stem: "ltc"
-  std::string summary;   // one line
-  std::string citation;  // bibliography key and section: "Heitz et al. 2016; Hill & Heitz 2016"
+  std::string name;         // the file's stem: "ltc"
+  std::string summary;      // one line
+  std::string citation;     // bibliography key and section: "Heitz et al. 2016; Hill & Heitz 2016"
   std::string author_note;  // where published and default form are the same, or what ours changes; one line
   std::vector<LightShape> shapes;
-  bool diffuse = true;   // lobes it shades
+  bool diffuse = true;  // lobes it shades
   bool specular = true;
   std::vector<std::string> brdfs;    // "ggx"
   std::vector<std::string> effects;  // EFFECT_* it takes: "two_sided", "fresnel", …
-  std::vector<std::string> exact;    // what it is exact in: "lambert_rectangle", "lambert_sphere", "point_limit", …
+  std::vector<std::string>
+      exact;  // what it is exact in: "lambert_rectangle", "lambert_sphere", "point_limit", …
   std::vector<Option> options;
   std::vector<Knob> knobs;
   std::vector<Table> tables;
-  std::map<std::string, std::string> published;  // option → choice of the form its author published; empty: no options
+  std::map<std::string, std::string>
+      published;  // option → choice of the form its author published; empty: no options
 };
 
 // All techniques of the library, sorted by name. A wrong header throws InputError with file and line.

@@ -160,6 +160,8 @@ Variant ParseVariant(const std::vector<Technique>& techniques, std::string_view 
         fmt::format("variant \"{}\": \"{}\" is out of place; expected TECHNIQUE[@{}][+OPTION=CHOICE]…", name,
                     rest, kPublished));
   }
+  if (const std::optional<std::string> why = WhyInconsistent(variant))
+    throw InputError(fmt::format("variant \"{}\": {}", name, *why));
   return variant;
 }
 
@@ -176,21 +178,35 @@ std::vector<Variant> DefaultVariants(const std::vector<Technique>& techniques) {
 
 std::vector<Variant> AllVariants(const std::vector<Technique>& techniques) {
   std::vector<Variant> variants;
-  for (const Technique& technique : techniques) {
-    std::vector<Variant> combinations{Variant{&technique, {}}};
-    for (const Option& option : technique.options) {
-      std::vector<Variant> longer;
-      for (const Variant& shorter : combinations) {
-        for (const Choice& choice : option.choices) {
-          longer.push_back(shorter);
-          longer.back().options[option.name] = choice.name;
-        }
+  const auto add = [&](Variant variant) {
+    if (WhyInconsistent(variant)) return;
+    if (std::find(variants.begin(), variants.end(), variant) == variants.end())
+      variants.push_back(std::move(variant));
+  };
+  for (const Variant& base : DefaultVariants(techniques)) {
+    add(base);
+    for (const Option& option : base.technique->options) {
+      for (const Choice& choice : option.choices) {
+        Variant changed = base;
+        changed.options[option.name] = choice.name;
+        add(std::move(changed));
       }
-      combinations = std::move(longer);
     }
-    variants.insert(variants.end(), combinations.begin(), combinations.end());
   }
   return variants;
+}
+
+std::optional<std::string> WhyInconsistent(const Variant& variant) {
+  for (const Option& option : variant.technique->options) {
+    const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
+    for (const auto& [other, needed] : choice->needs) {
+      if (const std::string& chosen = variant.options.at(other); chosen != needed) {
+        return fmt::format("{}={} does not go with {}={}; expected +{}={}", option.name, choice->name, other,
+                           chosen, other, needed);
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene) {

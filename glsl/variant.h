@@ -31,8 +31,12 @@ Variant ParseVariant(const std::vector<Technique>& techniques, std::string_view 
 // Each technique's default and, where it differs, its published form: what `compare` shows.
 std::vector<Variant> DefaultVariants(const std::vector<Technique>& techniques);
 
-// Every combination of options of every technique, for the tests.
+// Each technique's default and published form, and each of both with any one option chosen otherwise: every choice
+// beside the others that it is likely to be seen with. (Every combination would be tens of thousands.)
 std::vector<Variant> AllVariants(const std::vector<Technique>& techniques);
+
+// A sentence that says which of the variant's choices does not go with another, or nothing.
+std::optional<std::string> WhyInconsistent(const Variant& variant);
 
 // A sentence that says why the variant cannot shade the scene, or nothing.
 std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene);

@@ -60,10 +60,10 @@ VectorFormFactor LambertVector(RectangleView view) {
   float along_y = y0 * y1;
   float a2 = view.half_size.x * view.half_size.x;
   float b2 = view.half_size.y * view.half_size.y;
-  float t0 = EdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0);
-  float t1 = EdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1);
-  float t2 = EdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1);
-  float t3 = EdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0);
+  float t0 = LambertEdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0);
+  float t1 = LambertEdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1);
+  float t2 = LambertEdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1);
+  float t3 = LambertEdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0);
   float alpha = view.half_size.x * (t0 - t2);
   float beta = view.half_size.y * (t1 - t3);
   float gamma = view.half_size.x * view.half_size.y * (t0 + t1 + t2 + t3);

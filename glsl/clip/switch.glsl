@@ -1,18 +1,10 @@
 // Exact horizon clipping by a case for each of the 16 sets of corners above the horizon [Hill & Heitz 2016, "ClipQuadToHorizon"].
 // The print has lost parts of it: all cases are derived anew. Dual; after an "edge".
+#include "edge_vector.glsl"
 
-// Where the side from a corner above to one below meets the horizon; only its direction counts.
-vec3 MeetHorizon(vec3 above, vec3 below) { return above.z * below - below.z * above; }
-
-vec3 EdgeVector(vec4 v0, vec4 v1) {
-  vec3 a = vec3(v0);
-  vec3 b = vec3(v1);
-  vec3 c = cross(a, b);
-  return EdgeRatio(dot(a, b), v0.w * v1.w, 1.0, dot(c, c)) * c;
-}
-
-// The vector form factor of what is above the horizon; its z is the form factor for a clamped cosine about +z. Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
-vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) {
+// The vector form factor of what is above the horizon. Of the parallelogram center ± half_a ± half_b with half_a × half_b towards
+// the origin.
+vec3 ClippedCorners(vec3 center, vec3 half_a, vec3 half_b, bool lambert) {
   // Counter-clockwise seen from the origin.
   vec3 p0 = center + half_a + half_b;
   vec3 p1 = center + half_a - half_b;
@@ -95,10 +87,14 @@ vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) {
   vec4 e2 = EdgeVertex(v2);
   vec4 e3 = EdgeVertex(v3);
   vec4 e4 = EdgeVertex(v4);
-  vec3 sum = EdgeVector(e0, e1) + EdgeVector(e1, e2) + EdgeVector(e2, e3);
-  if (count >= 4) sum += EdgeVector(e3, e4);
-  if (count == 5) sum += EdgeVector(e4, e0);
-  return vec3(sum.x * (0.5 / kPi), sum.y * (0.5 / kPi), AsFormFactor(sum.z * (0.5 / kPi)));
+  vec3 sum = EdgeVector(e0, e1, lambert) + EdgeVector(e1, e2, lambert) + EdgeVector(e2, e3, lambert);
+  if (count >= 4) sum += EdgeVector(e3, e4, lambert);
+  if (count == 5) sum += EdgeVector(e4, e0, lambert);
+  return VectorOfEdges(sum);
 }
 
-float ClippedLambert(RectangleView view) { return ClippedVector(view.center, view.half_a, view.half_b).z; }
+// Its z is the form factor for a clamped cosine about +z.
+vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) { return ClippedCorners(center, half_a, half_b, false); }
+
+// The form factor of the light itself.
+float ClippedLambert(RectangleView view) { return ClippedCorners(view.center, view.half_a, view.half_b, true).z; }

@@ -21,6 +21,9 @@ float EdgeRatio(float d, float m, float share, float line2) {
   return share * i * EdgePolynomial(q * i);
 }
 
+// Of the light itself, for the diffuse lobe.
+float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
+
 // θ itself; `area` = |v0 × v1|. Where the angle is obtuse the area says little, the half angle much: θ = P(u) √(2 − u²).
 float EdgeAngle(float d, float m, float area) {
   float q = m + d;

@@ -22,6 +22,9 @@ float EdgeRatio(float d, float m, float share, float line2) {
   return d >= 0.0 ? acute : kPi * inversesqrt(line2 + kSmallestEdge) - acute;
 }
 
+// Of the light itself, for the diffuse lobe.
+float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
+
 // θ itself; `area` = |v0 × v1|.
 float EdgeAngle(float d, float m, float area) {
   float q = m + abs(d);

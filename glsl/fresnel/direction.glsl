@@ -5,10 +5,8 @@
 // form factor brought back. The table's average is right once the light covers the whole lobe, when F' has length 1:
 // F'_z mixes the two.
 // m: M⁻¹; terms: see glsl/fit.h; lobe: F', of the transformed light's part above the horizon.
-vec3 LtcReflectance(vec3 f0, vec4 terms, vec4 m, float n_dot_v, vec3 lobe) {
-  // M up to a positive factor: the adjugate of M⁻¹.
-  vec3 to_light = vec3(m.w * lobe.x - m.z * lobe.z, (m.x * m.w - m.y * m.z) * lobe.y, m.x * lobe.z - m.y * lobe.x);
-  float sine = sqrt(1.0 - n_dot_v * n_dot_v);
+vec3 LtcReflectance(vec3 f0, vec4 terms, vec4 m, float n_dot_v, float sine, vec3 lobe) {
+  vec3 to_light = LtcUndo(m, lobe);
   // 1e-30: F' is 0 where there is no light.
   float v_dot_l = (sine * to_light.x + n_dot_v * to_light.z) * inversesqrt(max(dot(to_light, to_light), 1e-30));
   float v_dot_h = sqrt(clamp(0.5 + 0.5 * v_dot_l, 0.0, 1.0));

@@ -15,6 +15,7 @@ choices = [
   ["fit", "polynomial in elevation and size"],
   ["table", "table of the quotient to the unclipped one"],
   ["exact", "closed form"],
+  ["cheap", "rational in size and height alone: no root, no case"],
 ]
 
 [[option]]
@@ -23,7 +24,10 @@ summary = "Angle over sine of the edge integral"
 choices = [
   ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
   ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
-  ["rational", "rational fit on unit vectors, mirrored where obtuse"],
+  ["rational", "rational fit of angle over sine on unit vectors, mirrored where obtuse"],
+  ["quadratic", "the rational fit for the specular lobe, a quadratic for the diffuse one"],
+  ["acos", "the language's arc cosine"],
+  ["fast_acos", "the four-term arc cosine that GPUs run"],
 ]
 
 [[option]]
@@ -65,8 +69,8 @@ fresnel = "lobe"
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
   RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
-  vec2 uv = TableCoordinates(surface.roughness, LtcViewPosition(frame.n_dot_v));
-  vec4 m = LtcUnpack(SampleTable(table_ltc_matrix, uv), frame.n_dot_v);
+  vec2 uv = TableCoordinates(surface.roughness, LtcViewPosition(frame.n_dot_v, frame.sine));
+  vec4 m = LtcUnpack(SampleTable(table_ltc_matrix, uv), frame.n_dot_v, frame.sine);
   vec4 terms = SampleTable(table_ltc_terms, uv);
 
   vec3 center = LtcTransform(m, view.center);
@@ -78,6 +82,6 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   float lobe = LtcLobe(above, form_factor, terms);
   Radiance result;
   result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
-  result.specular = LtcReflectance(surface.f0, terms, m, frame.n_dot_v, vec3(transformed.f.x, transformed.f.y, above)) * light.radiance * lobe;
+  result.specular = LtcReflectance(surface.f0, terms, m, frame.n_dot_v, frame.sine, vec3(transformed.f.x, transformed.f.y, above)) * light.radiance * lobe;
   return result;
 }

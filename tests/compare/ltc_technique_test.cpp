@@ -325,12 +325,15 @@ TEST_F(LtcTechnique, NoStepAsTheViewerPassesTheNormal) {
 // Two ways to the same integral, in double. The diffuse arc works in the light's own axes, which as floats
 // are perpendicular to 1e-7 only: measured 7.2e-7; the specular one differs by rounding alone: measured
 // 4e-16.
-TEST_F(LtcTechnique, ArcAndSwitchAgree) {
+TEST_F(LtcTechnique, TheExactClipsAgree) {
   const auto cases = RandomCases(1 << 14);
   const auto arc = Shade("ltc", cases, Precision::kDouble),
              switched = Shade("ltc+clip=switch", cases, Precision::kDouble);
   EXPECT_LT(Compare(arc, switched, &Shaded::diffuse).max, 3e-6);
   EXPECT_LT(Compare(arc, switched, &Shaded::specular).max, 1e-6);
+  const auto streamed = Shade("ltc+clip=stream", cases, Precision::kDouble);
+  EXPECT_LT(Compare(streamed, switched, &Shaded::diffuse).max, 1e-12);
+  EXPECT_LT(Compare(streamed, switched, &Shaded::specular).max, 1e-12);
 }
 
 // Wholly above the horizon nothing is clipped, and the proxy sphere must not be felt where it is above, too.
@@ -393,14 +396,10 @@ TEST_F(LtcTechnique, DegenerateInputsStayFiniteForEveryOption) {
   for (const Variant& variant : AllVariants(techniques_)) {
     const std::string& technique = variant.technique->name;
     if (technique != "ltc" && technique != "hill") continue;
-    // Tables and Fresnel change little here, and would compile six times as long.
-    if ((variant.options.at("fit") != "polygon" || variant.options.at("fresnel") != "direction") &&
-        !(variant == PublishedVariant(*variant.technique)))
-      continue;
     EXPECT_TRUE(IsSound(Shade(variant.Name(), cases))) << variant.Name();
     ++variants;
   }
-  EXPECT_EQ(variants, 2 * (3 * 3 + 1));  // techniques, clips or spheres × edges, the published form
+  EXPECT_GT(variants, 40);
 }
 
 }  // namespace

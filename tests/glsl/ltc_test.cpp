@@ -64,6 +64,7 @@ TEST(Ltc, FrameIsOrthonormalAndFacesTheViewer) {
     EXPECT_NEAR(glm::dot(frame.tangent, frame.bitangent), 0.0, 1e-12);
     EXPECT_GT(glm::dot(glm::cross(frame.tangent, frame.bitangent), normal), 0.999);
     EXPECT_GE(glm::dot(frame.tangent, to_view), -1e-4);
+    EXPECT_NEAR(frame.sine, glm::length(glm::cross(normal, to_view)), 1e-15);
   }
 }
 
@@ -71,7 +72,7 @@ TEST(Ltc, MirrorFrameStorageTurnsBack) {
   const double c = 0.3, s = std::sqrt(1.0 - c * c);
   const dvec4 m(1.7, -0.2, 0.4, 0.9);  // m0, m1, m2, m3
   const dvec4 stored(m[0] * c + m[2] * s, m[1] * c + m[3] * s, m[2] * c - m[0] * s, m[3] * c - m[1] * s);
-  EXPECT_LT(glm::length(dual::FromMirrorFrame(stored, c) - m), 1e-15);
+  EXPECT_LT(glm::length(dual::FromMirrorFrame(stored, c, s) - m), 1e-15);
 }
 
 // With the identity the transformed cosine is the clamped cosine, and nothing else than the Lambert form
@@ -100,28 +101,33 @@ TEST(Ltc, IdentityIsTheClampedCosine) {
   }
 }
 
+const double kSine = std::sqrt(0.75);
+
 TEST(Ltc, FresnelOfTheWholeLobeLiesBetweenF0AndOne) {
   const dvec4 terms(0.9, 0.1, 0.0, 0.0), m(1.0, 0.0, 0.0, 1.0);
-  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(1.0), terms, m, 0.5, dvec3(0.0)).x, 0.9, 1e-15);
-  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(0.0), terms, m, 0.5, dvec3(0.0)).x, 0.1, 1e-15);
-  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(0.04), terms, m, 0.5, dvec3(0.0)).x, 0.04 * 0.8 + 0.1, 1e-15);
+  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(1.0), terms, m, 0.5, kSine, dvec3(0.0)).x, 0.9, 1e-15);
+  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(0.0), terms, m, 0.5, kSine, dvec3(0.0)).x, 0.1, 1e-15);
+  EXPECT_NEAR(dual::whole::LtcReflectance(dvec3(0.04), terms, m, 0.5, kSine, dvec3(0.0)).x, 0.04 * 0.8 + 0.1,
+              1e-15);
 }
 
 // A light that covers the lobe gets its average; a small one Schlick's value where it stands, brought back by
 // M.
 TEST(Ltc, FresnelTowardsTheLight) {
   const dvec4 terms(0.9, 0.1, 0.0, 0.0), m(1.3, -0.2, 0.4, 0.6);
-  const double n_dot_v = 0.4;
-  EXPECT_NEAR(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, dvec3(0.0, 0.0, 1.0)).x,
+  const double n_dot_v = 0.4, sine = std::sqrt(1.0 - n_dot_v * n_dot_v);
+  EXPECT_NEAR(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, sine, dvec3(0.0, 0.0, 1.0)).x,
               0.04 * 0.8 + 0.1, 1e-12);
-  const dvec3 to_view(std::sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
+  const dvec3 to_view(sine, 0.0, n_dot_v);
   for (const dvec3 to_light : {dvec3(-0.9, 0.1, 0.3), dvec3(0.2, 0.7, 0.6), dvec3(0.0, 0.0, 1.0)}) {
     const dvec3 transformed = 1e-9 * glm::normalize(dual::LtcTransform(m, to_light));
     const double v_dot_h = glm::dot(to_view, glm::normalize(to_view + glm::normalize(to_light)));
     const double expected = 0.9 * (0.04 + 0.96 * std::pow(1.0 - v_dot_h, 5.0));
-    EXPECT_NEAR(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, transformed).x, expected, 1e-8);
+    EXPECT_NEAR(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, sine, transformed).x, expected,
+                1e-8);
   }
-  EXPECT_TRUE(std::isfinite(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, dvec3(0.0)).x));
+  EXPECT_TRUE(
+      std::isfinite(dual::towards::LtcReflectance(dvec3(0.04), terms, m, n_dot_v, sine, dvec3(0.0)).x));
 }
 
 // As a sampler does it: bilinear, clamped to the edge, texel (i, j)'s centre at (i + ½, j + ½) / size.
@@ -141,10 +147,11 @@ TEST(Ltc, TablesAreReadAsTheFitWroteThem) {
     std::mt19937_64 engine(3);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     for (int i = 0; i < 1000; ++i) {
-      const double roughness = uniform(engine), cosine = std::max(uniform(engine), dual::kMinViewCosine);
+      const double roughness = uniform(engine), cosine = std::max(uniform(engine), dual::kMinViewCosine),
+                   sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
       const LtcLookup expected = Look(tables, roughness, cosine);
-      const dvec2 uv = dual::TableCoordinates(roughness, position(cosine));
-      const dvec4 m = unpack(Sample(tables.matrix, tables.size, uv), cosine);
+      const dvec2 uv = dual::TableCoordinates(roughness, position(cosine, sine));
+      const dvec4 m = unpack(Sample(tables.matrix, tables.size, uv), cosine, sine);
       EXPECT_LT(glm::length(m - expected.m), 1e-9 * glm::length(m)) << roughness << ' ' << cosine;
       EXPECT_LT(glm::length(Sample(tables.terms, tables.size, uv) - expected.terms), 1e-9);
       // Facing is kept, and with it the polygon's order.

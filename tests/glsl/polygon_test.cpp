@@ -16,6 +16,9 @@ namespace arc {
 namespace switched {
 #include "glsl/clip/switch.glsl"
 }
+namespace stream {
+#include "glsl/clip/stream.glsl"
+}
 namespace none {
 #include "glsl/clip/none.glsl"
 }
@@ -23,6 +26,9 @@ namespace proxy {
 #include "glsl/sphere/exact.glsl"
 #include "glsl/vector_form_factor.glsl"
 }  // namespace proxy
+namespace cheap {
+#include "glsl/sphere/cheap.glsl"
+}
 namespace fitted {
 #include "glsl/sphere/fit.glsl"
 #include "glsl/vector_form_factor.glsl"
@@ -50,6 +56,27 @@ namespace switched {
 #include "glsl/clip/switch.glsl"
 }
 }  // namespace rational
+namespace quadratic {
+#include "glsl/edge/quadratic.glsl"
+namespace arc {
+#include "glsl/clip/arc.glsl"
+}
+}  // namespace quadratic
+namespace acos_edge {
+#include "glsl/edge/acos.glsl"
+namespace arc {
+#include "glsl/clip/arc.glsl"
+}
+namespace stream {
+#include "glsl/clip/stream.glsl"
+}
+}  // namespace acos_edge
+namespace fast_acos {
+#include "glsl/edge/fast_acos.glsl"
+namespace stream {
+#include "glsl/clip/stream.glsl"
+}
+}  // namespace fast_acos
 namespace exact {
 // The edges without any approximation: what is left is the clip's own error.
 vec4 EdgeVertex(vec3 v) {
@@ -61,11 +88,17 @@ double EdgeAngle(double d, double, double area) {
 double EdgeRatio(double d, double, double share, double line2) {
   return line2 > 0.0 ? std::atan2(share * std::sqrt(line2), d) / std::sqrt(line2) : 0.0;
 }
+double LambertEdgeRatio(double d, double m, double share, double line2) {
+  return EdgeRatio(d, m, share, line2);
+}
 namespace arc {
 #include "glsl/clip/arc.glsl"
 }
 namespace switched {
 #include "glsl/clip/switch.glsl"
+}
+namespace stream {
+#include "glsl/clip/stream.glsl"
 }
 namespace proxy {
 #include "glsl/sphere/exact.glsl"
@@ -197,7 +230,7 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
   Random random;
   Worst mirrored_lambert, mirrored, mirrored_switched;
   Worst arc_lambert, arc, exact_arc_lambert, exact_arc, switched, exact_switched, rational_arc,
-      rational_switched;
+      rational_switched, exact_stream, quadratic_lambert, quadratic, acos_arc, acos_stream, fast_acos;
   double vector_error = 0.0;
   std::array<int, 16> patterns{};
   for (int i = 0; i < 100000; ++i) {
@@ -218,6 +251,12 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
     switched.Add(dual::half_angle::switched::ClippedVector(c.center, c.a, c.b).z, expected);
     exact_switched.Add(dual::exact::switched::ClippedVector(c.center, c.a, c.b).z, expected);
     rational_arc.Add(dual::rational::arc::ClippedVector(c.center, c.a, c.b).z, expected);
+    exact_stream.Add(dual::exact::stream::ClippedVector(c.center, c.a, c.b).z, expected);
+    quadratic_lambert.Add(dual::quadratic::arc::ClippedLambert(rectangle.view), lambert);
+    quadratic.Add(dual::quadratic::arc::ClippedVector(c.center, c.a, c.b).z, expected);
+    acos_arc.Add(dual::acos_edge::arc::ClippedVector(c.center, c.a, c.b).z, expected);
+    acos_stream.Add(dual::acos_edge::stream::ClippedVector(c.center, c.a, c.b).z, expected);
+    fast_acos.Add(dual::fast_acos::stream::ClippedVector(c.center, c.a, c.b).z, expected);
     rational_switched.Add(dual::rational::switched::ClippedVector(c.center, c.a, c.b).z, expected);
   }
   for (int pattern = 0; pattern < 16; ++pattern) {
@@ -245,6 +284,64 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
   EXPECT_GT(rational_switched.error, 0.4);
   EXPECT_GT(rational_switched.RelativeRmse(), 0.01);
   EXPECT_LT(rational_switched.RelativeRmse(), 0.04);
+  // In double the arc cosine is exact but for its own slope at 1; the four terms err by 6.75e-5 rad an edge,
+  // over 2π.
+  EXPECT_LT(exact_stream.error, 1e-11);
+  EXPECT_LT(acos_arc.error, 1e-7);
+  EXPECT_LT(acos_stream.error, 1e-7);
+  EXPECT_GT(fast_acos.error, 1e-5);
+  EXPECT_LT(fast_acos.error, 6e-5);
+  // The quadratic is the diffuse lobe's alone.
+  EXPECT_LT(quadratic.error, 1e-6);
+  EXPECT_GT(quadratic_lambert.error, 1e-3);
+  EXPECT_LT(quadratic_lambert.error, 1.5e-2);
+}
+
+// The published fits of θ/sin θ beside the best of their form, over the acute angles: what the comments of
+// the edge files and the README say.
+TEST(Polygon, PublishedEdgeFitsBesideTheBestOfTheirForm) {
+  const auto error = [](const auto& fit, const auto& exact) {
+    double worst = 0.0;
+    for (int i = 0; i < 200000; ++i) {
+      const double y = i / 200000.0;
+      worst = std::max(worst, std::abs(fit(y) / exact(y) - 1.0));
+    }
+    return worst;
+  };
+  const auto angle_over_sine = [](double y) { return std::acos(y) / std::sqrt((1.0 - y) * (1.0 + y)); };
+  const auto angle_over_root = [](double y) { return std::acos(y) / std::sqrt(1.0 - y); };
+  EXPECT_NEAR(error([](double y) { return dual::rational::AcuteAngleOverSine(y); }, angle_over_sine),
+              1.459e-6, 1e-9);
+  EXPECT_NEAR(error(
+                  [](double y) {
+                    return (5.42776659 + (3.12996384 + 0.0899517101 * y) * y) /
+                           (3.45542545 + (4.19225187 + y) * y);
+                  },
+                  angle_over_sine),
+              5.57e-7, 1e-9);
+  // EdgeRatio of unit vectors with a sine of 1 is θ/sin θ.
+  EXPECT_NEAR(
+      error([](double y) { return dual::quadratic::LambertEdgeRatio(y, 1.0, 1.0, 1.0); }, angle_over_sine),
+      7.257e-3, 1e-6);
+  EXPECT_NEAR(
+      error([](double y) { return 1.56375926 + (-0.860683851 + 0.301404526 * y) * y; }, angle_over_sine),
+      4.480e-3, 1e-6);
+  EXPECT_NEAR(
+      error([](double y) { return dual::fast_acos::ArcCosine(y) / std::sqrt(1.0 - y); }, angle_over_root),
+      4.77e-5, 1e-7);
+  EXPECT_NEAR(
+      error([](double y) { return 1.57072542 + (-0.212052558 + (0.074093359 - 0.0186164972 * y) * y) * y; },
+            angle_over_root),
+      4.514e-5, 1e-8);
+  double angle_error = 0.0, best_angle_error = 0.0;
+  for (int i = -100000; i <= 100000; ++i) {
+    const double x = i / 100000.0, y = std::abs(x);
+    angle_error = std::max(angle_error, std::abs(dual::fast_acos::ArcCosine(x) - std::acos(x)));
+    const double best = 1.57072882 + (-0.212115243 + (0.0742623484 - 0.0187298697 * y) * y) * y;
+    best_angle_error = std::max(best_angle_error, std::abs(best * std::sqrt(1.0 - y) - std::acos(y)));
+  }
+  EXPECT_NEAR(angle_error, 6.753e-5, 1e-8);
+  EXPECT_NEAR(best_angle_error, 6.751e-5, 1e-8);
 }
 
 TEST(Polygon, VectorFormFactorOfRandomRectangles) {
@@ -294,7 +391,8 @@ double SphereByQuadrature(double size, double y) {
 }
 
 TEST(Polygon, ClippedSphere) {
-  double exact_error = 0.0, fit_error = 0.0, fit_sum = 0.0;
+  double exact_error = 0.0, fit_error = 0.0, fit_sum = 0.0, fit_share = 0.0, cheap_error = 0.0,
+         cheap_share = 0.0;
   int count = 0;
   for (int i = 1; i <= 40; ++i) {
     for (int j = -40; j <= 40; ++j) {
@@ -304,12 +402,28 @@ TEST(Polygon, ClippedSphere) {
       const double error = std::abs(dual::half_angle::fitted::ClippedSphere(size, y) - expected);
       fit_error = std::max(fit_error, error);
       fit_sum += error;
+      fit_share = std::max(fit_share, error / size);
+      const double cheap = std::abs(dual::half_angle::cheap::ClippedSphere(size, y) - expected);
+      cheap_error = std::max(cheap_error, cheap);
+      cheap_share = std::max(cheap_share, cheap / size);
       ++count;
     }
   }
   EXPECT_LT(exact_error, 1e-7);        // the quadrature's own; measured 2.6e-8
   EXPECT_LT(fit_error, 0.0060);        // measured 0.0055
   EXPECT_LT(fit_sum / count, 0.0012);  // measured 0.0010
+  EXPECT_LT(fit_share, 0.0060);        // of |F|; measured 0.0056, small spheres included below
+  EXPECT_NEAR(cheap_error, 0.134, 0.002);
+  EXPECT_NEAR(cheap_share, 0.18, 0.005);
+  for (int i = 1; i <= 60; ++i) {
+    for (int j = -200; j <= 200; ++j) {
+      const double size = std::pow(10.0, -0.1 * i), y = std::sqrt(size) * 1.1 * j / 200.0;
+      if (std::abs(y) > 1.0) continue;
+      const double exact = dual::exact::proxy::ClippedSphere(size, y);
+      EXPECT_LT(std::abs(dual::half_angle::fitted::ClippedSphere(size, y) - exact), 0.0060 * size)
+          << size << ' ' << y;
+    }
+  }
   // Wholly above nothing is clipped, wholly below nothing is left.
   EXPECT_NEAR(dual::half_angle::fitted::ClippedSphere(0.25, 0.6), 0.15, 1e-15);
   EXPECT_NEAR(dual::half_angle::fitted::ClippedSphere(0.25, -0.6), 0.0, 1e-15);
@@ -379,6 +493,9 @@ TEST(Polygon, DegenerateInputsStayFormFactors) {
                   dual::half_angle::switched::ClippedLambert(view),
                   dual::rational::switched::ClippedLambert(view), dual::exact::switched::ClippedLambert(view),
                   dual::half_angle::none::ClippedLambert(view),
+                  dual::half_angle::stream::ClippedLambert(view), dual::acos_edge::arc::ClippedLambert(view),
+                  dual::acos_edge::stream::ClippedLambert(view),
+                  dual::fast_acos::stream::ClippedLambert(view), dual::quadratic::arc::ClippedLambert(view),
                   dual::half_angle::proxy::ClippedProxy(dual::half_angle::proxy::LambertVector(view)),
                   dual::half_angle::fitted::ClippedProxy(dual::half_angle::fitted::ParallelogramVector(
                       view.center, view.half_a, view.half_b))}) {
@@ -392,7 +509,7 @@ TEST(Polygon, DegenerateInputsStayFormFactors) {
       }
     }
   }
-  EXPECT_EQ(count, 5 * 5 * 6 * 4 * 3 * 14);
+  EXPECT_EQ(count, 5 * 5 * 6 * 4 * 3 * 19);
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+// An edge's part of a polygon's vector form factor, without 1/(2π), from its two corners. Dual; after an "edge".
+
+// A corner as the edges want it: see EdgeVertex. lambert: of the light itself rather than of the transformed one.
+vec3 EdgeVector(vec4 v0, vec4 v1, bool lambert) {
+  vec3 a = vec3(v0);
+  vec3 b = vec3(v1);
+  vec3 c = cross(a, b);
+  float d = dot(a, b);
+  float m = v0.w * v1.w;
+  float line2 = dot(c, c);
+  return (lambert ? LambertEdgeRatio(d, m, 1.0, line2) : EdgeRatio(d, m, 1.0, line2)) * c;
+}
+
+// Where the side from a corner above to one below meets the horizon; only its direction counts.
+vec3 MeetHorizon(vec3 above, vec3 below) { return above.z * below - below.z * above; }
+
+// From the sum of a polygon's edges.
+vec3 VectorOfEdges(vec3 sum) { return vec3(sum.x * (0.5 / kPi), sum.y * (0.5 / kPi), AsFormFactor(sum.z * (0.5 / kPi))); }
