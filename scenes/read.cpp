@@ -9,13 +9,14 @@
 #include <functional>
 #include <glm/gtc/constants.hpp>
 #include <initializer_list>
+#include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <string_view>
 
+#include "scenes/edit_distance.h"
 #include "scenes/error.h"
 #include "scenes/image.h"
 #include "scenes/mesh_file.h"
@@ -55,22 +56,6 @@ constexpr int kMaxCells = 2048;  // a side: 4.2 million quads
 // The Debian package whose models a scene may name, and where it installs them.
 constexpr std::string_view kPackagePrefix = "glmark2-data:";
 constexpr const char* kPackageFolder = "/usr/share/glmark2";
-
-// Edit distance with insertions, deletions and substitutions [Levenshtein 1966].
-std::size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
 
 // "'roughness'" where `word` looks like a slip of it, else "one of: …".
 std::string Suggest(std::string_view word, const std::vector<std::string>& known) {
