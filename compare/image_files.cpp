@@ -50,7 +50,8 @@ float HalfToFloat(std::uint16_t bits) {
 }
 
 // `pixels` are interleaved, `stride` bytes a pixel.
-void WriteFile(const std::filesystem::path& file, const OIIO::ImageSpec& spec, const void* pixels) {
+void WriteFile(const std::filesystem::path& file, OIIO::ImageSpec spec, const void* pixels) {
+  spec.attribute("DateTime", "");  // else the time of day: the same image must give the same bytes
   auto output = OIIO::ImageOutput::create(file.string());
   if (!output) Fail(file, OIIO::geterror());
   output->threads(1);  // the caller writes many files at once

@@ -235,6 +235,17 @@ TEST(Images, BrightDimAndBrokenValuesSurvive) {
   }
 }
 
+// An EXR's header may carry the time of day ("YYYY:MM:DD hh:mm:ss"); ours must not.
+TEST(Images, AnExrHasNoTimeInIt) {
+  const Folder folder;
+  WriteExr(folder / "x.exr", *Small().scenes[1].truth);
+  std::ifstream file(folder / "x.exr", std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  const std::string header = bytes.substr(0, 1024);
+  EXPECT_THAT(header, testing::HasSubstr("diffuse.R"));
+  EXPECT_THAT(header, testing::Not(testing::ContainsRegex("[0-9][0-9][0-9][0-9]:[0-9][0-9]:[0-9][0-9] ")));
+}
+
 TEST(Images, UnroundedExrIsExact) {
   const Folder folder;
   const RadianceImage& image = *Small().scenes[1].truth;
