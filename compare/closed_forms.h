@@ -16,7 +16,7 @@ struct HorizonPolygon {
 HorizonPolygon ClipToHorizon(std::span<const glm::dvec3> corners);
 
 // ∫ cosθ/π dω over a convex polygon at or above the horizon, seen from the origin, normal z; its corners
-// counter-clockwise from outside give a positive value [Lambert 1760; Arvo 1994, eq. 7].
+// counter-clockwise from outside give a positive value [Lambert 1760; Arvo 1995].
 double PolygonFormFactor(const HorizonPolygon& polygon);
 
 // An elliptic cone of directions with apex at the origin: axis_3 + axis_1·tan_1·cosψ + axis_2·tan_2·sinψ is

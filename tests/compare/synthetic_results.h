@@ -231,7 +231,7 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
   VariantResult refused;
   refused.name = refused.short_name = "lightfield";
   refused.summary = "Light-field vector put into a BRDF.";
-  refused.citation = "Arvo 1994";
+  refused.citation = "Arvo 1995";
   refused.supported = false;
   refused.reason = "lightfield shades rectangles only; this scene has a sphere";
   scene.variants.push_back(refused);

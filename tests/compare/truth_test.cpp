@@ -44,8 +44,8 @@ ShadingPoint AtOrigin(double cos_v = 0.8, double roughness = 0.5) {
           roughness * roughness};
 }
 
-// A rectangle parallel to the surface whose corner is above the point [Howell, Radiation configuration
-// factors, B-3]: F = 1/(2π) [A/√(1+A²) atan(B/√(1+A²)) + B/√(1+B²) atan(A/√(1+B²))], A, B its sides over the
+// A rectangle parallel to the surface whose corner is above the point [Howell 1982, element to
+// parallel rectangle]: F = 1/(2π) [A/√(1+A²) atan(B/√(1+A²)) + B/√(1+B²) atan(A/√(1+B²))], A, B its sides over the
 // distance.
 TEST(Truth, FormFactorOfParallelRectangle) {
   for (double a : {1e-3, 0.1, 1.0, 30.0}) {
@@ -62,7 +62,7 @@ TEST(Truth, FormFactorOfParallelRectangle) {
 }
 
 // A rectangle that stands on the horizon, its edge on the floor at distance d, width 2w, height h; the point
-// faces up. Polar slices [Howell, B-4]: F = 1/(2π) [atan(B) − A atan(B·A)…] doubled for the two halves.
+// faces up. Polar slices [Howell 1982, element to perpendicular rectangle]: F = 1/(2π) [atan(B) − A atan(B·A)…] doubled for the two halves.
 TEST(Truth, FormFactorOfStandingRectangleWhoseLowerHalfIsCut) {
   for (double w : {0.05, 0.7, 20.0}) {
     for (double h : {0.1, 1.0, 5.0}) {
@@ -88,7 +88,7 @@ TEST(Truth, FormFactorOfSphere) {
         expected = std::cos(omega) * sine * sine;
       } else if (omega >= 0.5 * kPi + sigma) {
         expected = 0.0;
-      } else {  // crosses the horizon [Lagarde & de Rousiers 2014, listing 7, sphere with horizon handling]
+      } else {  // crosses the horizon [Lagarde & de Rousiers 2014, sphere lights with horizon handling]
         double x = std::sqrt(1.0 / (sine * sine) - 1.0), y = -x / std::tan(omega), z = std::sqrt(1.0 - y * y);
         expected = (sine * sine * (std::cos(omega) * std::acos(y) - x * std::sin(omega) * z) +
                     std::atan(std::sin(omega) * z / x)) /
@@ -107,7 +107,7 @@ TEST(Truth, FormFactorOfDisk) {
     Light above = MakeLight(LightShape::kDisk, {0, 0, 1.5}, {0, 0, -1}, glm::dvec2(r));
     double expected = r * r / (r * r + 1.5 * 1.5);
     EXPECT_NEAR(IntegrateLight(AtOrigin(), above, 1e-4).form_factor, expected, 1e-10 * expected) << r;
-    // A disk of radius r parallel to the surface, its axis at a distance a [Howell, B-13].
+    // A disk of radius r parallel to the surface, its axis at a distance a [Howell 1982, element to disk].
     double a = 0.8, h = 1.1;
     Light aside = MakeLight(LightShape::kDisk, {a, 0.3, h}, {0, 0, -1}, glm::dvec2(r));
     double a2 = a * a + 0.09, z = 1.0 + h * h / a2 + r * r / a2;

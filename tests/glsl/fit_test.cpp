@@ -276,8 +276,8 @@ double OverRectangle(const Corners& corners, const Function& f) {
 }
 
 TEST(Fit, IdentityIsTheClampedCosine) {
-  // A square of half side 1 at height 1: four corner form factors (1/2π)·2·(1/√2)·atan(1/√2) [Howell, C-11
-  // with a = b = c].
+  // A square of half side 1 at height 1: four corner form factors (1/2π)·2·(1/√2)·atan(1/√2) [Howell 1982
+  // element to parallel rectangle].
   const double corner =
       2.0 / std::sqrt(2.0) * std::atan(1.0 / std::sqrt(2.0)) * 0.5 * glm::one_over_pi<double>();
   const Corners above = Rectangle({0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
