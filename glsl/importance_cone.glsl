@@ -4,37 +4,13 @@
 //
 // With half vectors at θ_h from the normal, D(θ_h)/D(0) = σ gives sin²θ_h = (σ^−½ − 1) α²/(1 − α²); the light's direction
 // turns twice as far, and the versine of 2θ_h is 2 sin²θ_h.
-#include "brdf.glsl"
+#include "specular_lobe.glsl"
 #include "spherical_cap.glsl"
 
 // The threshold that makes Phong's cone of eq. 1.18 (half angle √(2/(g + 2))) is σ = 1/e; √e − 1 = 0.6487.
 float ThresholdConeVersine(float alpha) {
   float alpha2 = alpha * alpha;
   return min(2.0 * 0.6487212707 * alpha2 / max(1.0 - alpha2, 1e-6), 2.0);
-}
-
-// GgxDensity of the angle between two unit vectors, from their cross product: in float the cosine alone cannot resolve
-// the peak of a lobe with alpha below 1e-3.
-float GgxDensityBetween(vec3 normal, vec3 half_vector, float alpha) {
-  vec3 c = cross(normal, half_vector);
-  float sin2 = min(dot(c, c), 1.0);
-  float k = alpha / (sin2 + (1.0 - sin2) * alpha * alpha);
-  return k * k / kPi;
-}
-
-// The specular lobe with its cosine towards the light, F·D·G2/(4 n·v), 1/sr, per channel; 0 below the horizon.
-vec3 SpecularLobe(Surface surface, vec3 to_view, vec3 to_light) {
-  float n_dot_l = dot(surface.normal, to_light);
-  float n_dot_v = max(dot(surface.normal, to_view), 1e-6);
-  vec3 sum = to_view + to_light;
-  vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-20));
-  float density = GgxDensityBetween(surface.normal, half_vector, surface.alpha);
-  float lobe = density * SmithVisibility(n_dot_v, max(n_dot_l, 1e-6), surface.alpha) * max(n_dot_l, 0.0);
-#if EFFECT_FRESNEL
-  return (surface.f0 + (vec3(1.0) - surface.f0) * SchlickWeight(dot(to_view, half_vector))) * lobe;
-#else
-  return surface.f0 * lobe;
-#endif
 }
 
 // Ours: the versine that conserves energy. The lobe fills 4 n·v dω_h, so a cone in which it is as high as at the mirror

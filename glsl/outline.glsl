@@ -1,6 +1,7 @@
 #pragma once
 // The outline of a light's visible part on the sphere of directions, as arcs counter-clockwise seen from outside, and its form
 // factor by Lambert's contour integral. Frame: the shading normal is z. The same mathematics as compare/closed_forms.cpp.
+#include "directions.glsl"
 #include "polar_rule.glsl"
 
 // The elliptic cone of directions that a disk or a sphere covers, as in compare/closed_forms.h: axis_1 is the wider one.
@@ -26,26 +27,6 @@ struct Outline {
   float form_factor;
   bool mirror_inside;  // whether the light covers the mirror direction
 };
-
-// atan(y / x), y ≥ 0, x ≥ 0: three halvings of the angle, then Taylor's series; 1e-13. Drivers' own is good to 2e-5 only.
-float PositiveAngle(float y, float x) {
-  bool steep = y > x;
-  float t = min(y, x) / max(max(y, x), 1e-30);
-  t = t / (1.0 + sqrt(1.0 + t * t));
-  t = t / (1.0 + sqrt(1.0 + t * t));
-  t = t / (1.0 + sqrt(1.0 + t * t));
-  float t2 = t * t;
-  float series = 1.0 + t2 * (-1.0 / 3.0 + t2 * (1.0 / 5.0 + t2 * (-1.0 / 7.0 + t2 * (1.0 / 9.0 - t2 / 11.0))));
-  float angle = 8.0 * t * series;
-  return steep ? 0.5 * kPi - angle : angle;
-}
-
-// The angle in (−π, π] of the direction (x, y).
-float Angle(float y, float x) {
-  float a = PositiveAngle(abs(y), abs(x));
-  a = x < 0.0 ? kPi - a : a;
-  return y < 0.0 ? -a : a;
-}
 
 // Arc i of the outline. A quarter of a cone is measured from the nearer end of its long axis.
 Arc OutlineArc(Outline outline, int i) {
@@ -131,12 +112,6 @@ void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(
     }
     outline.form_factor = sum / kPi;
   }
-}
-
-vec3 AnyPerpendicular(vec3 v) {
-  vec3 axis = abs(v.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-  vec3 p = cross(v, axis);
-  return p * inversesqrt(dot(p, p));
 }
 
 // center: m; normal: unit, towards the origin's side; radius: m. In the plane of centre and normal c = (ρ, h), and the cone's

@@ -176,6 +176,16 @@ class HeaderReader {
     return text;
   }
 
+  // Unlike other names it may begin with a digit: it always follows its option's.
+  std::string ChoiceName(const toml::node& node, std::string_view what) const {
+    std::string text = Text(node, what);
+    if (text.empty() || text[0] == '_' || !IsIdentifier("c" + text)) {
+      Fail(LineOf(node), fmt::format("{} \"{}\" is no name", what, text),
+           "lower-case letters, digits and single _");
+    }
+    return text;
+  }
+
   double Number(const toml::table& table, std::string_view key, int line) const {
     const toml::node& node = Get(table, key, line);
     const std::optional<double> number = node.value<double>();
@@ -286,10 +296,10 @@ class HeaderReader {
            "choices = [[\"name\", \"one line\"], …], a third element { option = \"choice\" } where it needs "
            "another");
     }
-    Choice choice{Identifier((*pair)[0], "choice"), Text((*pair)[1], "the choice's line"), {}};
+    Choice choice{ChoiceName((*pair)[0], "choice"), Text((*pair)[1], "the choice's line"), {}};
     if (pair->size() == 3) {
       for (const auto& [key, needed] : *(*pair)[2].as_table())
-        choice.needs[std::string(key.str())] = Identifier(needed, key.str());
+        choice.needs[std::string(key.str())] = ChoiceName(needed, key.str());
     }
     for (const Choice& earlier : option.choices) {
       if (earlier.name == choice.name) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -23,7 +24,7 @@
 
 namespace arealab {
 
-// White albedo, F0 = f0 in every channel, a light of radiance 1.
+// White albedo, F0 = f0 in every channel.
 struct PointCase {
   LightShape shape = LightShape::kRectangle;
   glm::dvec3 position{0.0}, normal{0.0, 0.0, 1.0}, to_view{0.0, 0.0, 1.0};
@@ -31,6 +32,7 @@ struct PointCase {
   glm::dvec3 center{0.0, 0.0, 1.0}, axis_x{1.0, 0.0, 0.0}, axis_y{0.0, -1.0, 0.0},
       light_normal{0.0, 0.0, -1.0};
   glm::dvec2 half_size{0.5};
+  double radiance = 1.0;  // of the light; Truth() is for 1
 
   // As the GL gets it: rounded to float.
   PointCase Rounded() const {
@@ -151,8 +153,10 @@ class TechniquePoints {
     return variants;
   }
 
+  // `knobs` override the header's initial values by name.
   std::vector<Shaded> Shade(const std::string& variant_name, const std::vector<PointCase>& cases,
-                            Precision precision = Precision::kFloat) {
+                            Precision precision = Precision::kFloat,
+                            const std::map<std::string, double>& knobs = {}) {
     const GladGLContext& gl = context_->gl();
     const Variant variant = ParseVariant(techniques_, variant_name);
     std::vector<std::pair<std::string, int>> effects;
@@ -163,6 +167,10 @@ class TechniquePoints {
       effects.emplace_back(std::string("EFFECT_") + name, 0);
     const Program program(gl, Expand(library_, "fullscreen.vert", variant, effects, Precision::kFloat),
                           Expand(library_, "points.frag", variant, effects, precision));
+    for (const Knob& knob : variant.technique->knobs) {
+      const auto set = knobs.find(knob.name);
+      program.Set("knob_" + knob.name, static_cast<float>(set == knobs.end() ? knob.initial : set->second));
+    }
     const int rows = static_cast<int>((cases.size() + kColumns - 1) / kColumns);
     const glm::ivec2 size(kColumns, rows);
     std::vector<glm::vec4> texels(static_cast<std::size_t>(kColumns * rows * kRowsPerCase));
@@ -177,7 +185,7 @@ class TechniquePoints {
       put(2, c.center, static_cast<double>(c.shape));
       put(3, c.axis_x, c.half_size.x);
       put(4, c.axis_y, c.half_size.y);
-      put(5, c.light_normal, 0.0);
+      put(5, c.light_normal, c.radiance);
       put(6, c.to_view, 0.0);
     }
     const GlObject input = MakeTexture(gl, GL_RGBA32F, 1, {kColumns, rows * kRowsPerCase});
@@ -247,7 +255,7 @@ void main() {
   light.half_axis_y = light.axis_y * light.half_size.y;
   light.area = light.shape == SHAPE_RECTANGLE ? 4.0 * light.half_size.x * light.half_size.y
                                               : kPi * light.half_size.x * light.half_size.x;
-  light.radiance = vec3(1.0);
+  light.radiance = vec3(row5.w);
   light.products = vec3(light.half_size.x * light.half_size.x, light.half_size.y * light.half_size.y,
                         2.0 * light.half_size.x * light.half_size.y);
   Radiance radiance = ShadeLight(surface, light, row6.xyz);

@@ -125,7 +125,7 @@ TEST(BuiltInScenes, EachLoadsAndAsksOneQuestion) {
     for (const Light& light : scene.lights) EXPECT_GT(light.Flux(), 0.0);
   }
   EXPECT_THAT(names, ::testing::IsSupersetOf({"gloss", "sinking", "grazing", "mirror", "strip", "shapes",
-                                              "spheres", "relief", "scan", "sixteen"}));
+                                              "bulbs", "spheres", "relief", "scan", "sixteen"}));
   EXPECT_EQ(BuiltInScenes().front().stem(), "gloss");
 }
 

@@ -1,0 +1,77 @@
+/*---
+summary = "The point of a sphere nearest to the mirror ray stands for it in the specular lobe, dimmed for the widening; diffuse as from a point"
+citation = "Karis 2013"
+author_note = "Real Shading in Unreal Engine 4, 'Area Lights': representative point (eq. 11), normalisation (eq. 14), the diffuse lobe as a point light's, which above the horizon is a sphere's; in the published form his windowed fall-off (eq. 9). For eq. 14 the notes point back to eq. 10, whose radius / (3 distance) is widening=third; his engine's code has radius / (2 distance), which alone keeps a mirror's radiance at normal incidence, and is taken for his form. The BRDF is the scene's, not his (Schlick's masking with a remapped roughness). He has spheres and tubes: no rectangle, no disk; tubes are no light of a scene here. The engine later changed both the normalisation and the horizon"
+shapes = ["sphere"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["fresnel", "many_lights"]
+exact = ["point_limit"]
+
+[[option]]
+name = "widening"
+summary = "By how much the sphere widens the lobe (alpha' of eq. 14)"
+choices = [
+  ["half", "radius / (2 distance), what the half vector turns (his engine's code)"],
+  ["third", "radius / (3 distance) (eq. 10 by the word)"],
+]
+
+[[option]]
+name = "falloff"
+summary = "Fall-off with distance"
+choices = [
+  ["inverse_square", "physical"],
+  ["windowed", "zero at the light's radius of influence, finite at its centre (eq. 9)"],
+]
+
+[[knob]]
+name = "influence"
+label = "Radius of influence (falloff=windowed)"
+unit = "m"
+initial = 10.0
+min = 0.5
+max = 1000.0
+
+[published]
+widening = "half"
+falloff = "windowed"
+---*/
+#include "specular_lobe.glsl"
+
+#if WIDENING_HALF
+const float kWidening = 1.0 / 2.0;
+#else
+const float kWidening = 1.0 / 3.0;
+#endif
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  Radiance result;
+  result.diffuse = vec3(0.0);
+  result.specular = vec3(0.0);
+  float radius = light.half_size.x;
+  vec3 to_center = light.center - surface.position;
+  float distance2 = max(dot(to_center, to_center), radius * radius);  // inside it is as on the sphere
+  float inverse_distance = inversesqrt(distance2);
+  float n_dot_l = dot(surface.normal, to_center) * inverse_distance;
+  if (n_dot_l <= 0.0) return result;
+
+#if FALLOFF_WINDOWED
+  float share2 = distance2 / (knob_influence * knob_influence);
+  float window = clamp(1.0 - share2 * share2, 0.0, 1.0);
+  float falloff = window * window / (distance2 + 1e-4);  // his 1 is a square centimetre
+#else
+  float falloff = inverse_distance * inverse_distance;
+#endif
+  vec3 irradiance = light.radiance * (light.area * falloff * n_dot_l);
+  result.diffuse = surface.diffuse_albedo * irradiance / kPi;
+
+  vec3 mirror = surface.normal * (2.0 * dot(surface.normal, to_view)) - to_view;
+  vec3 center_to_ray = mirror * dot(mirror, to_center) - to_center;
+  float gap2 = max(dot(center_to_ray, center_to_ray), 1e-30);
+  vec3 closest = to_center + center_to_ray * min(radius * inversesqrt(gap2), 1.0);
+  vec3 to_closest = closest * inversesqrt(max(dot(closest, closest), 1e-30));
+  float widened = min(surface.alpha + kWidening * radius * inverse_distance, 1.0);
+  float normalization = surface.alpha / widened;
+  result.specular = SpecularBrdf(surface, to_view, to_closest) * irradiance * (normalization * normalization);
+  return result;
+}

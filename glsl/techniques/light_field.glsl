@@ -1,0 +1,78 @@
+/*---
+summary = "Arvo's light-field vector of the polygon: its cosine for the diffuse lobe, its direction put into the BRDF for the specular"
+citation = "Light field 2013; Arvo 1994; Lambert 1760"
+author_note = "Published: the vector normalised, which the text says is what its listing does: form factor and fall-off are lost, a light is as bright from afar as from near; the language's arc cosine, Sutherland-Hodgman clipping. Default: Arvo's vector irradiance as it stands, exact for Lambert. In both, the test for lights wholly above or below comes first, and the specular is the BRDF towards the vector times its irradiance: a highlight of a point, brighter without bound as roughness falls, never the light's own outline. The listing's slips (two names for one polygon, a fixed count of corners, the same test twice) are corrected"
+shapes = ["rectangle"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["two_sided", "fresnel", "many_lights"]
+exact = ["lambert_rectangle", "point_limit"]
+
+[[option]]
+name = "vector"
+summary = "What the polygon's edges are summed to"
+choices = [
+  ["irradiance", "vector irradiance: form factor and fall-off (Arvo's)"],
+  ["unit", "its direction alone (the published listing)"],
+]
+
+[[option]]
+name = "clip"
+summary = "Clipping where the light crosses the horizon"
+choices = [
+  ["arc", "branchless in the light's plane, the closing side as an arc"],
+  ["stream", "side by side as the edges are added (Sutherland & Hodgman's, the published one)"],
+  ["switch", "one case for each set of corners above the horizon"],
+]
+
+[[option]]
+name = "edge"
+summary = "Angle over sine of the edge integral"
+choices = [
+  ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
+  ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
+  ["acos", "the language's arc cosine (the published one)"],
+]
+
+[published]
+vector = "unit"
+clip = "stream"
+edge = "acos"
+---*/
+#include "ltc.glsl"
+#include "edge"
+#include "clip"
+#include "specular_lobe.glsl"
+#include "sphere/fit.glsl"  // for the proxy sphere in the next, not used here
+#include "vector_form_factor.glsl"
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  Radiance result;
+  result.diffuse = vec3(0.0);
+  result.specular = vec3(0.0);
+  ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
+  RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
+
+  // The early test: how far the centre is above the horizon, against how far the corners reach.
+  float reach = abs(view.half_a.z) + abs(view.half_b.z);
+  if (view.center.z < -reach) return result;
+  vec3 field;  // vector irradiance over π·radiance, world
+  if (view.center.z > reach) {
+    vec3 f = LambertVector(view).f;
+    field = light.axis_x * f.x + light.axis_y * f.y + light.normal * f.z;
+  } else {
+    vec3 f = ClippedVector(view.center, view.half_a, view.half_b);
+    field = frame.tangent * f.x + frame.bitangent * f.y + frame.normal * f.z;
+  }
+
+  float size2 = dot(field, field);
+  if (size2 < 1e-36) return result;  // (1e-9 of the sky)²: no direction is left in float
+  vec3 to_light = field * inversesqrt(size2);
+#if VECTOR_UNIT
+  field = to_light;
+#endif
+  float form_factor = AsFormFactor(dot(surface.normal, field));
+  result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
+  result.specular = SpecularBrdf(surface, to_view, to_light) * light.radiance * (kPi * form_factor);
+  return result;
+}

@@ -1,0 +1,134 @@
+/*---
+summary = "Samples of the light's solid angle and of the lobe, combined: unbiased, noisy"
+citation = "Veach & Guibas 1995; Heitz 2018; Ureña et al. 2013; Burley 2020"
+author_note = "Nobody's published form: what a user would otherwise do. Half of the samples on the light (rectangle: even in solid angle, by area below 0.01 sr; disk: by area; sphere: even over its cone), half along the mirrored visible normals of GGX, weighed by the balance heuristic; a lone sample is of either kind by chance. Owen-scrambled Sobol points, another scrambling for every pixel, light and seed, none for the time"
+shapes = ["rectangle", "disk", "sphere"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["two_sided", "fresnel", "many_lights"]
+
+[[option]]
+name = "samples"
+summary = "Samples of each light in each pixel"
+choices = [
+  ["16", "eight on the light, eight along the lobe"],
+  ["1", "one of either kind"],
+  ["4", "two and two"],
+  ["64", "thirty-two and thirty-two"],
+]
+
+[[knob]]
+name = "seed"
+label = "Seed"
+unit = ""
+initial = 0.0
+min = 0.0
+max = 1000000.0
+---*/
+#include "ggx_sampling.glsl"
+#include "light_sampling.glsl"
+#include "low_discrepancy.glsl"
+#include "ltc.glsl"  // the shading frame
+#include "specular_lobe.glsl"
+
+#if SAMPLES_1
+const int kSamples = 1;
+#elif SAMPLES_4
+const int kSamples = 4;
+#elif SAMPLES_16
+const int kSamples = 16;
+#else
+const int kSamples = 64;
+#endif
+
+// Lights shaded so far in this pixel: each has points of its own.
+uint lights_shaded = 0u;
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  Radiance result;
+  result.diffuse = vec3(0.0);
+  result.specular = vec3(0.0);
+  lights_shaded += 1u;
+  uint seed = HashCombine(HashCombine(Hash(uint(gl_FragCoord.x) + 65536u * uint(gl_FragCoord.y)), lights_shaded), uint(knob_seed));
+  uint light_seed = HashCombine(seed, 1u);
+  uint lobe_seed = HashCombine(seed, 2u);
+
+  ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
+  float n_dot_v = clamp(dot(surface.normal, to_view), 1e-6, 1.0);
+  float sin_v = sqrt(1.0 - n_dot_v * n_dot_v);
+
+  vec3 to_center = light.center - surface.position;
+  vec3 point = -vec3(dot(light.axis_x, to_center), dot(light.axis_y, to_center), dot(light.normal, to_center));
+#if EFFECT_SPHERE
+  Cap cap;
+  if (light.shape == SHAPE_SPHERE) {
+    // From inside nothing of its outside is seen.
+    if (dot(to_center, to_center) <= light.half_size.x * light.half_size.x) return result;
+    cap = SphereCap(to_center, light.half_size.x, surface.normal);
+  }
+#endif
+#if EFFECT_RECTANGLE
+  SphericalRectangle rectangle = ViewSphericalRectangle(point, light.half_size);
+#endif
+
+  for (int i = 0; i < kSamples; ++i) {
+    bool of_light = kSamples == 1 ? (seed & 1u) == 0u : (i & 1) == 0;
+    vec2 u = SobolPoint(uint(i >> 1), of_light ? light_seed : lobe_seed);
+    vec3 to_light = vec3(0.0);  // unit, world
+    if (!of_light) {
+      vec3 h = SampleVisibleHalfVector(n_dot_v, surface.alpha, u);
+      float v_dot_h = sin_v * h.x + n_dot_v * h.z;
+      vec3 local = vec3(2.0 * v_dot_h * h.x - sin_v, 2.0 * v_dot_h * h.y, 2.0 * v_dot_h * h.z - n_dot_v);
+      to_light = frame.tangent * local.x + frame.bitangent * local.y + frame.normal * local.z;
+    }
+    float light_density = 0.0;  // stays 0 where the lobe's sample misses the light
+#if EFFECT_SPHERE
+    if (light.shape == SHAPE_SPHERE) {
+      if (of_light) to_light = SampleCap(cap, u);
+      if (of_light || VersineBetween(to_light, cap.axis) <= cap.versine) light_density = 1.0 / (2.0 * kPi * max(cap.versine, 1e-30));
+    }
+#endif
+#if EFFECT_RECTANGLE || EFFECT_DISK
+    if (light.shape != SHAPE_SPHERE) {
+      float height = max(point.z, 1e-5 * (light.half_size.x + light.half_size.y));
+      vec3 on_light = vec3(0.0, 0.0, -height);  // m, from the point, in the light's frame
+      if (of_light) {
+#if EFFECT_RECTANGLE
+        if (light.shape == SHAPE_RECTANGLE) on_light = SampleSphericalRectangle(rectangle, u);
+#endif
+#if EFFECT_DISK
+        if (light.shape == SHAPE_DISK) on_light = vec3(SampleDisk(light.half_size.x, u) - vec2(point.x, point.y), -height);
+#endif
+        to_light = (light.axis_x * on_light.x + light.axis_y * on_light.y + light.normal * on_light.z) * inversesqrt(dot(on_light, on_light));
+      } else {
+        float fall = max(-dot(light.normal, to_light), 1e-9);
+        on_light = vec3(dot(light.axis_x, to_light), dot(light.axis_y, to_light), -fall) * (height / fall);
+      }
+      vec2 place = vec2(point.x + on_light.x, point.y + on_light.y);
+      bool faced = dot(light.normal, to_light) < 0.0;
+#if EFFECT_RECTANGLE
+      if (light.shape == SHAPE_RECTANGLE && faced && (of_light || (abs(place.x) <= light.half_size.x && abs(place.y) <= light.half_size.y))) {
+        light_density = SphericalRectangleDensity(rectangle, on_light);
+      }
+#endif
+#if EFFECT_DISK
+      if (light.shape == SHAPE_DISK && faced && (of_light || dot(place, place) <= light.half_size.x * light.half_size.x)) {
+        light_density = AreaDensity(on_light, light.area);
+      }
+#endif
+    }
+#endif
+    float n_dot_l = dot(surface.normal, to_light);
+    if (light_density > 0.0 && n_dot_l > 0.0) {
+      vec3 sum = to_view + to_light;
+      vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-20));
+      float lobe_density = VisibleMirrorDensity(n_dot_v, surface.alpha, GgxDensityBetween(surface.normal, half_vector, surface.alpha));
+      float weight = 2.0 / (light_density + lobe_density);
+      result.diffuse += surface.diffuse_albedo * (weight * n_dot_l / kPi);
+      result.specular += SpecularLobe(surface, to_view, to_light) * weight;
+    }
+  }
+  result.diffuse *= light.radiance / float(kSamples);
+  result.specular *= light.radiance / float(kSamples);
+  return result;
+}
