@@ -20,6 +20,7 @@ struct FitArguments {
 void PrintQuality(const std::filesystem::path& folder) {
   const std::map<std::string, FitKind> kinds = {{"ltc_ggx_polygon", FitKind::kPolygon},
                                                 {"ltc_ggx_cosine", FitKind::kCosine},
+                                                {"ltc_ggx_horizon", FitKind::kHorizon},
                                                 {"ltc_ggx_l3", FitKind::kPublished}};
   for (const auto& [name, kind] : kinds) {
     FitQuality quality;

@@ -1,14 +1,17 @@
 // The edge integral as first written, θ times the unit cross product [Hill & Heitz 2016, "EdgeIntegral"]. Dual; after ArcCosine.
 #include "unit_edge.glsl"
 
+// θ; rounding can leave the arc cosine's domain.
+float EdgeTheta(float d, float m) { return ArcCosine(clamp(EdgeCosine(d, m), -1.0, 1.0)); }
+
 // θ/line, θ the angle between v0 and v1, from d = v0·v1 and m = |v0||v1|, where |v0 × v1| = share · line, line2 = line².
 // An edge without length is none, whatever the cosine's rounding makes of its angle.
 float EdgeRatio(float d, float m, float share, float line2) {
-  return share > 0.0 ? ArcCosine(EdgeCosine(d, m)) * inversesqrt(max(line2, 1e-30)) : 0.0;
+  return share > 0.0 ? EdgeTheta(d, m) * inversesqrt(max(line2, 1e-30)) : 0.0;
 }
 
 // Of the light itself, for the diffuse lobe.
 float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
 
 // θ itself; `area` = |v0 × v1|.
-float EdgeAngle(float d, float m, float area) { return ArcCosine(EdgeCosine(d, m)); }
+float EdgeAngle(float d, float m, float area) { return EdgeTheta(d, m); }

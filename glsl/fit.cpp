@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <mutex>
@@ -27,40 +28,70 @@ double LastCosine(FitKind kind) {
   return kind == FitKind::kPublished ? 0.0 : kLastCosine;
 }
 
-double NodeCosine(FitKind kind, int row, int size) {
-  const double cosine = fit::ViewCosine(static_cast<double>(row) / (size - 1), LastCosine(kind));
+double NodeCosine(FitKind kind, LtcAxis axis, int row, int size) {
+  const double x = static_cast<double>(row) / (size - 1);
+  if (axis == LtcAxis::kCos) return 1.0 - x;
+  if (axis == LtcAxis::kTheta) return std::max(std::cos(glm::half_pi<double>() * x), 0.0);
+  const double cosine = fit::ViewCosine(x, LastCosine(kind));
   return kind == FitKind::kPublished ? std::max(cosine, std::cos(kPublishedLastAngle)) : cosine;
+}
+
+double AxisPosition(FitKind kind, LtcAxis axis, double cosine) {
+  if (axis == LtcAxis::kCos) return 1.0 - cosine;
+  if (axis == LtcAxis::kTheta) return std::acos(cosine) / glm::half_pi<double>();
+  return fit::ViewPosition(cosine, LastCosine(kind));
 }
 
 double NodeRoughness(int column, int size) {
   return static_cast<double>(column) / (size - 1);
 }
 
-// Undoes the mirror frame, where the kind has one.
-glm::dvec4 ToLocal(FitKind kind, double cosine, const glm::dvec4& stored) {
-  if (kind == FitKind::kPublished) return stored;
-  const fit::Whitening mirror{-std::sqrt((1.0 - cosine) * (1.0 + cosine)), cosine, 1.0, 1.0};
-  const fit::Terms m = mirror.ToLocal(fit::Terms(stored.x, stored.y, stored.z, stored.w));
+// The mirror frame, in which stored terms are those of a whitening that scales nothing.
+fit::Whitening FrameOf(LtcFrame frame, double cosine) {
+  if (frame == LtcFrame::kNormal) return {};
+  return {-std::sqrt((1.0 - cosine) * (1.0 + cosine)), cosine, 1.0, 1.0};
+}
+
+// The scale of the published fit over that at which the middle element is 1: M⁻¹'s last row, the lobe's mean
+// direction there, is a unit vector.
+double UndividedScale(const fit::Terms& m) {
+  return 1.0 / std::hypot(m[1], m[3]);
+}
+
+// A texel, and the fifth term of the other table, as M⁻¹ in the local frame with the middle element 1.
+glm::dvec4 ToLocal(const LtcStorage& storage, double cosine, const glm::dvec4& texel, double fifth) {
+  fit::Terms stored(texel.x, texel.y, texel.z, texel.w);
+  if (storage.norm == LtcNorm::kNone) stored /= fifth;
+  if (storage.norm == LtcNorm::kLast) stored = fit::Terms(texel.x, texel.y, texel.z, 1.0) / texel.w;
+  const fit::Terms m = FrameOf(storage.frame, cosine).ToLocal(stored);
   return {m[0], m[1], m[2], m[3]};
 }
 
+// The reverse.
+glm::vec4 FromLocal(const LtcStorage& storage, double cosine, const fit::Terms& m) {
+  fit::Terms stored = FrameOf(storage.frame, cosine).FromLocal(m);
+  if (storage.norm == LtcNorm::kNone) stored *= UndividedScale(m);
+  if (storage.norm == LtcNorm::kLast) stored = fit::Terms(stored[0], stored[1], stored[2], 1.0) / stored[3];
+  return {glm::dvec4(stored[0], stored[1], stored[2], stored[3])};
+}
+
 void Store(const View& view, const Cell& cell, std::size_t texel, LtcTables* tables) {
-  const bool mirror = tables->kind != FitKind::kPublished;
-  const fit::Whitening frame = mirror ? fit::Whitening{-view.sine, view.cosine, 1.0, 1.0} : fit::Whitening{};
-  const fit::Terms m = frame.FromLocal(cell.m);
-  tables->matrix[texel] = glm::vec4(glm::dvec4(m[0], m[1], m[2], m[3]));
-  if (!mirror) {
-    tables->terms[texel] = glm::vec4(glm::dvec4(cell.albedo, cell.schlick, 0.0, 0.0));
+  tables->matrix[texel] = FromLocal(tables->storage, view.cosine, cell.m);
+  const double scale = UndividedScale(cell.m);
+  if (tables->kind == FitKind::kPublished) {
+    tables->terms[texel] = glm::vec4(glm::dvec4(cell.albedo, cell.schlick, 0.0, scale));
     return;
   }
   // k (1 − b) + w = albedo; the shader's bracket is LTC + (w/k) E, its factor k.
   const double k = (cell.albedo - cell.cosine) / (1.0 - cell.leak);
-  tables->terms[texel] = glm::vec4(glm::dvec4(k, cell.schlick * k / cell.albedo, cell.cosine / k, cell.leak));
+  tables->terms[texel] = glm::vec4(glm::dvec4(k, cell.schlick * k / cell.albedo, cell.cosine / k, scale));
 }
 
 fit::PolygonFit Settings(FitKind kind) {
   fit::PolygonFit settings;
   settings.with_cosine = kind == FitKind::kCosine;
+  settings.above_horizon = kind == FitKind::kHorizon;
+  if (settings.above_horizon) settings.leak_penalty = 0.0;  // what leaks is clipped
   return settings;
 }
 
@@ -84,13 +115,13 @@ class Progress {
 LtcTables FitColumns(FitKind kind, const FitOptions& options, const std::vector<int>& columns,
                      const std::function<void(double)>& report) {
   const int size = options.size;
-  LtcTables tables{kind, size, {}, {}};
+  LtcTables tables{kind, OwnStorage(kind), size, {}, {}};
   const auto count = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   tables.matrix.resize(count);
   tables.terms.resize(count);
   Progress progress(report, static_cast<int>(columns.size()));
   const auto view_of = [&](int row, int column) {
-    return fit::MakeView(NodeRoughness(column, size), NodeCosine(kind, row, size));
+    return fit::MakeView(NodeRoughness(column, size), NodeCosine(kind, LtcAxis::kSqrt, row, size));
   };
   const auto texel = [&](int row, int column) { return static_cast<std::size_t>(row * size + column); };
   if (kind == FitKind::kPublished) {
@@ -134,11 +165,33 @@ std::string Stem(FitKind kind) {
       return "ltc_ggx_polygon";
     case FitKind::kCosine:
       return "ltc_ggx_cosine";
+    case FitKind::kHorizon:
+      return "ltc_ggx_horizon";
     case FitKind::kPublished:
       return "ltc_ggx_l3";
   }
   return {};
 }
+
+// The options that choose it: fit, lobes, horizon.
+std::string FilePrefix(FitKind kind) {
+  switch (kind) {
+    case FitKind::kPolygon:
+      return "ltc_ggx_polygon_one_lobe";
+    case FitKind::kCosine:
+      return "ltc_ggx_polygon_cosine_lobe";
+    case FitKind::kHorizon:
+      return "ltc_ggx_polygon_one_true";
+    case FitKind::kPublished:
+      return "ltc_ggx_l3_one_lobe";
+  }
+  return {};
+}
+
+constexpr std::array kFrameNames{"mirror", "normal"};
+constexpr std::array kNormNames{"middle", "none", "last"};
+constexpr std::array kAxisNames{"sqrt", "cos", "theta"};
+constexpr std::array kKinds{FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished};
 
 // Complete or not at all: into a temporary file beside it, then renamed.
 void WriteExr(const std::filesystem::path& file, int size, int channels, const float* values) {
@@ -174,8 +227,59 @@ std::vector<glm::vec4> ReadExr(const std::filesystem::path& file, int* size) {
 
 }  // namespace
 
+std::string MatrixFile(FitKind kind, const LtcStorage& storage) {
+  return fmt::format(
+      "{}_{}_{}_{}.exr", FilePrefix(kind), kFrameNames[static_cast<std::size_t>(storage.frame)],
+      kNormNames[static_cast<std::size_t>(storage.norm)], kAxisNames[static_cast<std::size_t>(storage.axis)]);
+}
+
+std::string TermsFile(FitKind kind, LtcAxis axis) {
+  return fmt::format("{}_{}_terms.exr", FilePrefix(kind), kAxisNames[static_cast<std::size_t>(axis)]);
+}
+
+LtcStorage OwnStorage(FitKind kind) {
+  LtcStorage storage;
+  if (kind == FitKind::kPublished) storage.frame = LtcFrame::kNormal;
+  return storage;
+}
+
+std::vector<LtcStorage> StoragesOf(FitKind kind) {
+  std::vector<LtcStorage> storages{OwnStorage(kind)};
+  const auto add = [&](const LtcStorage& storage) {
+    if (std::find(storages.begin(), storages.end(), storage) == storages.end()) storages.push_back(storage);
+  };
+  if (kind == FitKind::kPolygon || kind == FitKind::kPublished) {
+    add({LtcFrame::kMirror, LtcNorm::kMiddle, LtcAxis::kSqrt});
+    add({LtcFrame::kNormal, LtcNorm::kMiddle, LtcAxis::kSqrt});
+  }
+  if (kind == FitKind::kPublished) {  // the talk's own
+    for (const LtcNorm norm : {LtcNorm::kMiddle, LtcNorm::kNone, LtcNorm::kLast})
+      for (const LtcAxis axis : {LtcAxis::kSqrt, LtcAxis::kCos, LtcAxis::kTheta})
+        add({LtcFrame::kNormal, norm, axis});
+  }
+  return storages;
+}
+
+LtcTables Restored(const LtcTables& tables, const LtcStorage& storage) {
+  LtcTables restored{tables.kind, storage, tables.size, tables.matrix, tables.terms};
+  for (int row = 0; row < tables.size; ++row) {
+    const double cosine = NodeCosine(tables.kind, storage.axis, row, tables.size);
+    for (int column = 0; column < tables.size; ++column) {
+      const auto texel = static_cast<std::size_t>(row * tables.size + column);
+      const LtcLookup look = storage.axis == tables.storage.axis
+                                 ? LtcLookup{NodeMatrix(tables, row, column), tables.terms[texel]}
+                                 : Look(tables, NodeRoughness(column, tables.size), cosine);
+      const fit::Terms m(look.m.x, look.m.y, look.m.z, look.m.w);
+      restored.matrix[texel] = FromLocal(storage, cosine, m);
+      restored.terms[texel] = glm::vec4(look.terms);
+      restored.terms[texel].w = static_cast<float>(UndividedScale(m));
+    }
+  }
+  return restored;
+}
+
 std::vector<std::string> TableNames() {
-  return {"ltc_ggx_cosine", "ltc_ggx_l3", "ltc_ggx_polygon", "sphere"};
+  return {"ltc_ggx_cosine", "ltc_ggx_horizon", "ltc_ggx_l3", "ltc_ggx_polygon", "sphere"};
 }
 
 LtcTables FitLtc(FitKind kind, const FitOptions& options, const std::function<void(double)>& progress) {
@@ -191,7 +295,8 @@ LtcTables FitLtcColumns(FitKind kind, const FitOptions& options, const std::vect
 LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v) {
   const int last = tables.size - 1;
   const double x = std::clamp(roughness, 0.0, 1.0) * last;
-  const double y = fit::ViewPosition(n_dot_v, LastCosine(tables.kind)) * last;
+  const double cosine = std::clamp(n_dot_v, 0.0, 1.0);
+  const double y = std::clamp(AxisPosition(tables.kind, tables.storage.axis, cosine), 0.0, 1.0) * last;
   const int column = std::min(static_cast<int>(x), last - 1), row = std::min(static_cast<int>(y), last - 1);
   const double fx = x - column, fy = y - row;
   const auto mix = [&](const std::vector<glm::vec4>& texels) {
@@ -201,12 +306,14 @@ LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v) {
     return (at(0, 0) * (1.0 - fx) + at(0, 1) * fx) * (1.0 - fy) +
            (at(1, 0) * (1.0 - fx) + at(1, 1) * fx) * fy;
   };
-  return {ToLocal(tables.kind, std::clamp(n_dot_v, 0.0, 1.0), mix(tables.matrix)), mix(tables.terms)};
+  const glm::dvec4 terms = mix(tables.terms);
+  return {ToLocal(tables.storage, cosine, mix(tables.matrix), terms.w), terms};
 }
 
 glm::dvec4 NodeMatrix(const LtcTables& tables, int row, int column) {
-  return ToLocal(tables.kind, NodeCosine(tables.kind, row, tables.size),
-                 tables.matrix[static_cast<std::size_t>(row * tables.size + column)]);
+  const auto texel = static_cast<std::size_t>(row * tables.size + column);
+  return ToLocal(tables.storage, NodeCosine(tables.kind, tables.storage.axis, row, tables.size),
+                 tables.matrix[texel], tables.terms[texel].w);
 }
 
 double ClippedSphere(double y, double l) {
@@ -262,25 +369,36 @@ void FitTables(const std::filesystem::path& folder, const FitOptions& options,
       part(1.0);
       continue;
     }
-    for (const FitKind kind : {FitKind::kPolygon, FitKind::kCosine, FitKind::kPublished}) {
+    for (const FitKind kind : kKinds) {
       if (name != Stem(kind)) continue;
-      const LtcTables tables = FitLtc(kind, options, part);
-      WriteExr(folder / (name + ".exr"), options.size, 4, &tables.matrix[0].x);
-      WriteExr(folder / (name + "_terms.exr"), options.size, 4, &tables.terms[0].x);
+      const LtcTables own = FitLtc(kind, options, part);
+      for (const LtcStorage& storage : StoragesOf(kind)) {
+        const LtcTables tables = storage == own.storage ? own : Restored(own, storage);
+        WriteExr(folder / MatrixFile(kind, storage), options.size, 4, &tables.matrix[0].x);
+        const bool first_of_axis = storage.axis != LtcAxis::kSqrt || storage == own.storage;
+        if (first_of_axis && storage.norm == LtcNorm::kMiddle)
+          WriteExr(folder / TermsFile(kind, storage.axis), options.size, 4, &tables.terms[0].x);
+      }
     }
   }
 }
 
-LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind) {
+LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind, const LtcStorage& storage) {
   LtcTables tables;
   tables.kind = kind;
-  tables.matrix = ReadExr(folder / (Stem(kind) + ".exr"), &tables.size);
+  tables.storage = storage;
+  const std::filesystem::path matrix = folder / MatrixFile(kind, storage);
+  tables.matrix = ReadExr(matrix, &tables.size);
   int terms_size = 0;
-  tables.terms = ReadExr(folder / (Stem(kind) + "_terms.exr"), &terms_size);
+  tables.terms = ReadExr(folder / TermsFile(kind, storage.axis), &terms_size);
   if (terms_size != tables.size)
-    throw InputError(fmt::format("{}: sizes {} and {}; expected the same", (folder / Stem(kind)).string(),
-                                 tables.size, terms_size));
+    throw InputError(
+        fmt::format("{}: sizes {} and {}; expected the same", matrix.string(), tables.size, terms_size));
   return tables;
+}
+
+LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind) {
+  return ReadLtcTables(folder, kind, OwnStorage(kind));
 }
 
 }  // namespace arealab

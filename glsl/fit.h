@@ -9,23 +9,32 @@
 // The column of roughness 0 is fitted as any other, at alpha = 1e-4: m' is diag(c, 1, 2 alpha c) there to
 // 2e-4.
 //
-// ltc_ggx_polygon.exr, ltc_ggx_cosine.exr (ours)
-//   x = √((1 − cos θ)/(1 − cos 89°)), clamped to 1. The channels are the mirror-frame terms m' of
-//     M⁻¹ = [[m0, 0, m2], [0, 1, 0], [m1, 0, m3]] (rows), from local directions to cosine space:
-//   m0' = m0 c + m2 s, m1' = m1 c + m3 s, m2' = m2 c − m0 s, m3' = m3 c − m1 s, with c = cos θ and s = sin θ
-//   of the node. After the look-up, with the pixel's own c (not clamped to 89°) and s: m0 = m0' c − m2' s, m1
-//   = m1' c − m3' s, m2 = m2' c + m0' s, m3 = m3' c + m1' s.
-// ltc_ggx_polygon_terms.exr, ltc_ggx_cosine_terms.exr: R, G, B, A = magnitude, Schlick term, cosine weight,
-// b, so that
+// ltc_ggx_FIT_LOBES_HORIZON_FRAME_NORM_AXIS.exr, M⁻¹ = [[m0, 0, m2], [0, 1, 0], [m1, 0, m3]] (rows), from
+// local directions to cosine space. What was fitted, once each (the stem that `arealab fit --table` takes):
+//   polygon_one_lobe (ltc_ggx_polygon)    ours, on polygons
+//   polygon_cosine_lobe (ltc_ggx_cosine)  the same beside a signed share of the plain cosine lobe
+//   polygon_one_true (ltc_ggx_horizon)    the same for a shader that clips at the surface's horizon too
+//   l3_one_lobe (ltc_ggx_l3)              the published kind [Heitz et al. 2016]
+// and how the lobes are stored, which moves what lies between the nodes:
+//   frame: mirror, m' of M⁻¹·R with m0' = m0 c + m2 s, m1' = m1 c + m3 s, m2' = m2 c − m0 s, m3' = m3 c − m1
+//   s, c = cos θ
+//     and s = sin θ of the node; after the look-up, with the pixel's own: m0 = m0' c − m2' s, m1 = m1' c −
+//     m3' s, m2 = m2' c + m0' s, m3 = m3' c + m1' s. normal: m0 … m3 themselves.
+//   norm: middle, as above. none, five terms: m · L, and L in the other table's A; with this scale M e_z, the
+//   lobe's
+//     axis, is a unit vector, as in the published fit. last, m0/m3, m1/m3, m2/m3, 1/m3.
+//   axis: sqrt, x = √((1 − cos θ)/(1 − cos 89°)) clamped to 1, for l3 x = √(1 − cos θ) with its last row at θ
+//   = 1.57.
+//     cos, x = 1 − cos θ. theta, x = 2θ/π.
+//   A lobe is fitted once, in its own storage (mirror, middle, sqrt; l3: normal, middle, sqrt), and read from
+//   there.
+// ltc_ggx_FIT_LOBES_HORIZON_AXIS_terms.exr: R, G, B, A = magnitude, Schlick term, cosine weight, L, so that
 //     specular = (LTC + B · E) · (F0 · (R − G) + G) · radiance,
 //   LTC the transformed polygon's form factor (clipped at z = 0 after M⁻¹) and E the polygon's own (clipped
-//   at the true horizon; the diffuse integral). R = albedo/(1 − b + B) and G = ∫ρ(1 − v·h)⁵/(1 − b + B): with
-//   F = 1 and a light that covers the whole sky the result is the albedo. B = 0 in the polygon table. A = b,
-//   the LTC's share below the true horizon (for inspection; shaders need not read it).
-// ltc_ggx_l3.exr, ltc_ggx_l3_terms.exr (the published kind [Heitz et al. 2016])
-//   x = √(1 − cos θ), the last row at θ = 1.57. The channels are m0 … m3 of the same M⁻¹ in the local frame,
-//   no rotation after the look-up. Terms: R = albedo, G = ∫ρ(1 − v·h)⁵, B = A = 0: specular = LTC · (F0 · (R
-//   − G) + G) · radiance.
+//   at the true horizon; the diffuse integral). With b the LTC's share below the true horizon, b = ½(1 −
+//   m0/√(m0² + m1²)): ours, R = albedo/(1 − b + B) and G = ∫ρ(1 − v·h)⁵/(1 − b + B): with F = 1 and a light
+//   that covers the whole sky the result is the albedo; B = 0 but in the cosine table. l3, R = albedo, G =
+//   ∫ρ(1 − v·h)⁵, B = 0.
 // sphere.exr, one channel [Snyder 1996; Hill & Heitz 2016]: column i is y = 2i/(size − 1) − 1, the cosine of
 // the angle
 //   between normal and the sphere's centre; row j is l = |F| = sin²σ = j/(size − 1), σ the sphere's half
@@ -43,10 +52,24 @@
 
 namespace arealab {
 
-enum class FitKind { kPolygon, kCosine, kPublished };
+enum class FitKind { kPolygon, kCosine, kHorizon, kPublished };
+
+enum class LtcFrame { kMirror, kNormal };
+enum class LtcNorm { kMiddle, kNone, kLast };
+enum class LtcAxis { kSqrt, kCos, kTheta };
+struct LtcStorage {
+  LtcFrame frame = LtcFrame::kMirror;
+  LtcNorm norm = LtcNorm::kMiddle;
+  LtcAxis axis = LtcAxis::kSqrt;
+  bool operator==(const LtcStorage&) const = default;
+};
+LtcStorage OwnStorage(FitKind kind);
+// All that are written, its own first.
+std::vector<LtcStorage> StoragesOf(FitKind kind);
 
 struct LtcTables {
   FitKind kind = FitKind::kPolygon;
+  LtcStorage storage;
   int size = 0;
   std::vector<glm::vec4> matrix;  // row-major, [row · size + column]
   std::vector<glm::vec4> terms;
@@ -63,13 +86,16 @@ LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v);
 // M⁻¹ of a node, in the local frame.
 glm::dvec4 NodeMatrix(const LtcTables& tables, int row, int column);
 
+// The same lobes in another storage: at its nodes what Look finds.
+LtcTables Restored(const LtcTables& tables, const LtcStorage& storage);
+
 struct FitOptions {
   int size = 64;                    // nodes per axis, at least 2
   int rectangles = 400;             // of the polygon loss, per cell
   std::vector<std::string> tables;  // stems among TableNames(); empty: all
 };
 
-// "ltc_ggx_cosine", "ltc_ggx_l3", "ltc_ggx_polygon", "sphere".
+// "ltc_ggx_cosine", "ltc_ggx_horizon", "ltc_ggx_l3", "ltc_ggx_polygon", "sphere".
 std::vector<std::string> TableNames();
 
 // Fits one kind on all cores; the same numbers on any number of threads. `progress` (may be empty) gets the
@@ -86,8 +112,9 @@ std::vector<float> FitSphere(int size);
 // [Snyder 1996].
 double ClippedSphere(double y, double l);
 
-// Writes NAME.exr and NAME_terms.exr into `folder`, each complete or not at all, the same bytes for the same
-// numbers. Throws InputError for an unknown table name or where the folder cannot be written.
+// Writes the tables' files, each lobe in all its storages, into `folder`, each complete or not at all, the
+// same bytes for the same numbers. Throws InputError for an unknown table name or where the folder cannot be
+// written.
 void FitTables(const std::filesystem::path& folder, const FitOptions& options,
                const std::function<void(double)>& progress = {});
 
@@ -131,7 +158,12 @@ FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options = {
 // The same as a Markdown table, in per cent, with the seed.
 std::string QualityTable(const FitQuality& quality);
 
-// Reads NAME.exr and NAME_terms.exr. Throws InputError.
-LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind);
+// The files' names, without the folder.
+std::string MatrixFile(FitKind kind, const LtcStorage& storage);
+std::string TermsFile(FitKind kind, LtcAxis axis);
+
+// Reads both. Throws InputError.
+LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind, const LtcStorage& storage);
+LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind);  // in its own storage
 
 }  // namespace arealab

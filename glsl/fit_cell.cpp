@@ -314,7 +314,7 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
   std::vector<double> cosine, weight;
   double total_world = 0.0, total_lobe = 0.0;
   for (std::size_t i = 0; i < local.size(); ++i) {
-    white.push_back(Transform(whitening, local[i]));
+    white.push_back(Transform(whitening, settings.above_horizon ? ClipAbove(local[i]) : local[i]));
     (i < quads.world.size() ? total_world : total_lobe) += wanted[i] * wanted[i];
     cosine.push_back(settings.with_cosine ? UpperQuadIntegral(Terms(1.0, 0.0, 0.0, 1.0), local[i]) : 0.0);
   }

@@ -36,6 +36,7 @@ struct PolygonFit {
   double lobe_share = 0.1;    // of the loss: the quads scaled to the lobe
   double leak_penalty = 2.0;  // × b²
   bool with_cosine = false;
+  bool above_horizon = false;    // the shader clips at the surface's horizon too
   double cosine_penalty = 5e-3;  // × w²
 };
 

@@ -1,5 +1,6 @@
 #include "glsl/fit_polygon.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -75,36 +76,65 @@ Leak BelowHorizon(const Whitening& whitening, const Terms& p) {
   return leak;
 }
 
+namespace {
+
+void MakeNormals(Quad* quad) {
+  for (std::size_t i = 0; i < quad->count; ++i)
+    quad->normal[i] = glm::cross(quad->corner[i], quad->corner[(i + 1) % quad->count]);
+}
+
+}  // namespace
+
 Quad MakeQuad(std::array<glm::dvec3, 4> corners) {
   const glm::dvec3 middle = corners[0] + corners[2];
   if (glm::dot(glm::cross(corners[0], corners[1]), middle) < 0.0) std::swap(corners[1], corners[3]);
-  Quad quad{corners, {}};
-  for (std::size_t i = 0; i < 4; ++i) quad.normal[i] = glm::cross(corners[i], corners[(i + 1) % 4]);
+  Quad quad;
+  std::copy(corners.begin(), corners.end(), quad.corner.begin());
+  MakeNormals(&quad);
   return quad;
 }
 
+Quad ClipAbove(const Quad& quad) {
+  Quad clipped;
+  clipped.count = 0;
+  for (std::size_t i = 0; i < quad.count; ++i) {
+    const glm::dvec3& a = quad.corner[i];
+    const glm::dvec3& b = quad.corner[(i + 1) % quad.count];
+    if (a.z > 0.0) clipped.corner[clipped.count++] = a;
+    if ((a.z > 0.0) != (b.z > 0.0)) {
+      const double t = a.z / (a.z - b.z);
+      clipped.corner[clipped.count++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0.0};
+    }
+  }
+  MakeNormals(&clipped);
+  return clipped;
+}
+
 Quad Transform(const Whitening& whitening, const Quad& quad) {
-  std::array<glm::dvec3, 4> corners;
-  for (std::size_t i = 0; i < 4; ++i) corners[i] = whitening.Apply(quad.corner[i]);
-  return MakeQuad(corners);
+  Quad transformed = quad;
+  for (std::size_t i = 0; i < quad.count; ++i) transformed.corner[i] = whitening.Apply(quad.corner[i]);
+  MakeNormals(&transformed);
+  return transformed;
 }
 
 double QuadIntegral(const Terms& p, const Quad& quad, Terms* gradient) {
-  std::array<glm::dvec3, 4> u;
-  std::array<double, 4> length;
-  for (std::size_t i = 0; i < 4; ++i) {
+  std::array<glm::dvec3, 5> u;
+  std::array<double, 5> length;
+  bool above = false;
+  for (std::size_t i = 0; i < quad.count; ++i) {
     const glm::dvec3& v = quad.corner[i];
     u[i] = {p[0] * v.x + p[2] * v.z, v.y, p[1] * v.x + p[3] * v.z};
+    above = above || u[i].z > 0.0;
   }
   if (gradient) gradient->setZero();
-  if (u[0].z <= 0.0 && u[1].z <= 0.0 && u[2].z <= 0.0 && u[3].z <= 0.0) return 0.0;
-  for (std::size_t i = 0; i < 4; ++i) length[i] = glm::length(u[i]);
+  if (!above) return 0.0;
+  for (std::size_t i = 0; i < quad.count; ++i) length[i] = glm::length(u[i]);
   const double determinant = Determinant(p);
   double sum = 0.0;
   glm::dvec3 leaves(0.0), enters(0.0);  // where the outline crosses the lobe's horizon
   bool crosses = false;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t next = (i + 1) % 4;
+  for (std::size_t i = 0; i < quad.count; ++i) {
+    const std::size_t next = (i + 1) % quad.count;
     const double za = u[i].z, zb = u[next].z;
     if (za <= 0.0 && zb <= 0.0) continue;
     glm::dvec3 a = u[i], b = u[next];
@@ -150,38 +180,7 @@ double QuadIntegral(const Terms& p, const Quad& quad, Terms* gradient) {
 }
 
 double UpperQuadIntegral(const Terms& p, const Quad& quad) {
-  std::array<glm::dvec3, 6> polygon, clipped;  // a convex outline gains at most one corner per plane
-  std::size_t count = 4;
-  for (std::size_t i = 0; i < 4; ++i) polygon[i] = quad.corner[i];
-  const auto clip = [&] {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const glm::dvec3& a = polygon[i];
-      const glm::dvec3& b = polygon[(i + 1) % count];
-      if (a.z > 0.0) clipped[kept++] = a;
-      if ((a.z > 0.0) != (b.z > 0.0)) {
-        const double t = a.z / (a.z - b.z);
-        clipped[kept++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0.0};
-      }
-    }
-    polygon = clipped;
-    count = kept;
-  };
-  clip();
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 v = polygon[i];
-    polygon[i] = {p[0] * v.x + p[2] * v.z, v.y, p[1] * v.x + p[3] * v.z};
-  }
-  clip();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3& a = polygon[i];
-    const glm::dvec3& b = polygon[(i + 1) % count];
-    const glm::dvec3 n = glm::cross(a, b);
-    const double length = glm::length(n);
-    if (length > 0.0) sum += std::atan2(length, glm::dot(a, b)) * n.z / length;
-  }
-  return sum * (0.5 * glm::one_over_pi<double>());
+  return QuadIntegral(p, ClipAbove(quad));
 }
 
 std::vector<Quad> RandomRectangles(int count, std::uint64_t seed) {

@@ -49,10 +49,13 @@ Leak BelowHorizon(const Whitening& whitening, const Terms& p);
 // A convex quadrilateral seen from the shaded point, its corners counter-clockwise seen from there, so that
 // the normals of the edges' planes point inwards. Only directions matter.
 struct Quad {
-  std::array<glm::dvec3, 4> corner;
-  std::array<glm::dvec3, 4> normal;  // cross(corner[i], corner[i + 1]), inwards
+  std::array<glm::dvec3, 5> corner{};
+  std::array<glm::dvec3, 5> normal{};  // cross(corner[i], corner[i + 1]), inwards
+  std::size_t count = 4;               // of corners; 5, 3 or 0 where a plane has cut it
 };
 Quad MakeQuad(std::array<glm::dvec3, 4> corners);
+// Its part above the plane z = 0 of its own space.
+Quad ClipAbove(const Quad& quad);
 Quad Transform(const Whitening& whitening, const Quad& quad);
 
 // ∫ over the quad of the cosine lobe transformed by P, clipped exactly at the lobe's own horizon, in [0, 1]

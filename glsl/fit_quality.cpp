@@ -37,7 +37,8 @@ void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int n
   const fit::Terms cosine_lobe(1.0, 0.0, 0.0, 1.0);
   double squares = 0.0, difference = 0.0, total_squares = 0.0, total = 0.0;
   for (std::size_t i = 0; i < quads.size(); ++i) {
-    double value = fit::QuadIntegral(m, quads[i]);
+    double value = tables.kind == FitKind::kHorizon ? fit::UpperQuadIntegral(m, quads[i])
+                                                    : fit::QuadIntegral(m, quads[i]);
     if (look.terms.z != 0.0) value += look.terms.z * fit::UpperQuadIntegral(cosine_lobe, quads[i]);
     value *= look.terms.x;
     squares += (value - wanted[i]) * (value - wanted[i]);

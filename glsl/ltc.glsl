@@ -1,5 +1,5 @@
 #pragma once
-// Linearly transformed cosines [Heitz et al. 2016]: the frame, the look-up and the transform. Dual.
+// Linearly transformed cosines [Heitz et al. 2016]: the frame and the transform. Dual.
 //
 // A lobe of the BRDF × cosine is R · (the clamped cosine transformed by M); its integral over a polygon is R times the
 // form factor of the polygon transformed by M⁻¹. M⁻¹ = [p 0 q; 0 1 0; r 0 s] (rows), held as vec4(p, r, q, s), the tables' order.
@@ -41,15 +41,6 @@ vec2 TableCoordinates(float x, float y) { return vec2(x * (63.0 / 64.0) + 0.5 / 
 
 // √(1 − c), from the sine: 1 − c = s²/(1 + c).
 float RootOfVersine(float n_dot_v, float sine) { return sine * inversesqrt(1.0 + n_dot_v); }
-
-// For an axis of view angles that ends at 89°: √((1 − c)/(1 − cos 89°)), clamped to 1.
-float ViewPositionTo89(float n_dot_v, float sine) { return min(RootOfVersine(n_dot_v, sine) * sqrt(1.0 / 0.98254759356), 1.0); }
-
-// M⁻¹ from M⁻¹·R in the mirror frame, R turning the normal onto the mirrored view, by the pixel's own angle (ours). Sharp
-// lobes hardly move in that frame from one view angle to the next, and interpolation between them errs little.
-vec4 FromMirrorFrame(vec4 stored, float n_dot_v, float sine) {
-  return stored * n_dot_v + vec4(-stored.z, -stored.w, stored.x, stored.y) * sine;
-}
 
 // M⁻¹ v.
 vec3 LtcTransform(vec4 m, vec3 v) { return vec3(m.x * v.x + m.z * v.z, v.y, m.y * v.x + m.w * v.z); }

@@ -17,6 +17,6 @@ float EdgeRatio(float d, float m, float share, float line2) {
 // θ itself; `area` = |v0 × v1|. Mirrored as an angle, where it needs no clamp.
 float EdgeAngle(float d, float m, float area) {
   float x = EdgeCosine(d, m);
-  float acute = AcuteAngleOverSine(abs(x)) * area / max(m, 1e-30);
+  float acute = AcuteAngleOverSine(min(abs(x), 1.0)) * area / max(m, 1e-30);
   return x > 0.0 ? acute : kPi - acute;
 }

@@ -1,11 +1,4 @@
-// Tables as published: fitted on the lobe with an L3 norm, stored in the normal's frame over √(1 − cos θ)
-// [Heitz et al. 2016]. Dual; after ltc.glsl.
+// Tables as published, fitted on the lobe with an L3 norm [Heitz et al. 2016]. Dual; after ltc.glsl.
 
-// The table's second coordinate, [0, 1], from cosine and sine of the view angle.
-float LtcViewPosition(float n_dot_v, float sine) { return RootOfVersine(n_dot_v, sine); }
-
-// M⁻¹ from a texel.
-vec4 LtcUnpack(vec4 texel, float n_dot_v, float sine) { return texel; }
-
-// The lobe's integral from the transformed and the light's own form factor; the terms are as in glsl/fit.h.
-float LtcLobe(float transformed, float form_factor, vec4 terms) { return transformed; }
+// √(1 − c).
+float LtcRootPosition(float n_dot_v, float sine) { return RootOfVersine(n_dot_v, sine); }

@@ -32,11 +32,44 @@ choices = [
 
 [[option]]
 name = "fit"
-summary = "Tables of the transform"
+summary = "What the transform was fitted on"
 choices = [
-  ["polygon", "fitted on polygons, stored in the mirror frame, last row at 89°"],
-  ["cosine", "as polygon, with a signed share of the plain cosine lobe"],
-  ["l3", "fitted on the lobe with an L3 norm, stored in the normal's frame"],
+  ["polygon", "integrals over polygons, the lobe's frame free"],
+  ["l3", "the lobe with an L3 norm about its mean direction, as published"],
+]
+
+[[option]]
+name = "lobes"
+summary = "Lobes of the fit"
+choices = [
+  ["one", "one transformed cosine"],
+  ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt" }],
+]
+
+[[option]]
+name = "frame"
+summary = "Frame in which the tables hold the transform"
+choices = [
+  ["mirror", "about the mirrored view, turned back after the look-up"],
+  ["normal", "about the normal"],
+]
+
+[[option]]
+name = "norm"
+summary = "What the stored matrix is divided by"
+choices = [
+  ["middle", "its middle element: four terms, smooth"],
+  ["none", "nothing: five terms", { fit = "l3", frame = "normal" }],
+  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal" }],
+]
+
+[[option]]
+name = "axis"
+summary = "View angles of the tables' rows"
+choices = [
+  ["sqrt", "over √(1 − cos θ)"],
+  ["cos", "over cos θ", { fit = "l3", frame = "normal" }],
+  ["theta", "over θ", { fit = "l3", frame = "normal" }],
 ]
 
 [[option]]
@@ -48,19 +81,20 @@ choices = [
 ]
 
 [tables]
-ltc_matrix = "ltc_ggx_{fit}.exr"
-ltc_terms = "ltc_ggx_{fit}_terms.exr"
+ltc_matrix = "ltc_ggx_{fit}_{lobes}_lobe_{frame}_{norm}_{axis}.exr"
+ltc_terms = "ltc_ggx_{fit}_{lobes}_lobe_{axis}_terms.exr"
 sphere = "sphere.exr"
 
 [published]
 sphere = "table"
 edge = "rational"
 fit = "l3"
+frame = "normal"
 fresnel = "lobe"
 ---*/
 #include "brdf.glsl"
-#include "ltc.glsl"
-#include "fit"
+#include "ltc_tables.glsl"
+#include "lobes"
 #include "fresnel"
 #include "edge"
 #include "sphere"
@@ -69,19 +103,17 @@ fresnel = "lobe"
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
   RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
-  vec2 uv = TableCoordinates(surface.roughness, LtcViewPosition(frame.n_dot_v, frame.sine));
-  vec4 m = LtcUnpack(SampleTable(table_ltc_matrix, uv), frame.n_dot_v, frame.sine);
-  vec4 terms = SampleTable(table_ltc_terms, uv);
+  LtcCell cell = LookUpLtc(surface.roughness, frame);
 
-  vec3 center = LtcTransform(m, view.center);
-  vec3 half_a = LtcTransform(m, view.half_a);
-  vec3 half_b = LtcTransform(m, view.half_b);
+  vec3 center = LtcTransform(cell.m, view.center);
+  vec3 half_a = LtcTransform(cell.m, view.half_a);
+  vec3 half_b = LtcTransform(cell.m, view.half_b);
   float form_factor = ClippedProxy(LambertVector(view));
   VectorFormFactor transformed = ParallelogramVector(center, half_a, half_b);
   float above = ClippedProxy(transformed);
-  float lobe = LtcLobe(above, form_factor, terms);
+  float lobe = LtcLobe(above, form_factor, cell.terms);
   Radiance result;
   result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
-  result.specular = LtcReflectance(surface.f0, terms, m, frame.n_dot_v, frame.sine, vec3(transformed.f.x, transformed.f.y, above)) * light.radiance * lobe;
+  result.specular = LtcReflectance(surface.f0, cell.terms, cell.m, frame.n_dot_v, frame.sine, vec3(transformed.f.x, transformed.f.y, above)) * light.radiance * lobe;
   return result;
 }

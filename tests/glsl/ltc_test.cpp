@@ -11,14 +11,40 @@
 #include "glsl/brdf.glsl"
 #include "glsl/ltc.glsl"
 
+namespace mirror {
+#include "glsl/frame/mirror.glsl"
+}
+namespace normal {
+#include "glsl/frame/normal.glsl"
+}
+namespace middle {
+#include "glsl/norm/middle.glsl"
+}
+namespace none {
+#include "glsl/norm/none.glsl"
+}
+namespace last {
+#include "glsl/norm/last.glsl"
+}
 namespace polygon {
 #include "glsl/fit/polygon.glsl"
-}
-namespace cosine {
-#include "glsl/fit/cosine.glsl"
-}
+#include "glsl/axis/sqrt.glsl"
+}  // namespace polygon
 namespace l3 {
 #include "glsl/fit/l3.glsl"
+#include "glsl/axis/sqrt.glsl"
+}  // namespace l3
+namespace over_cos {
+#include "glsl/axis/cos.glsl"
+}
+namespace over_theta {
+#include "glsl/axis/theta.glsl"
+}
+namespace one {
+#include "glsl/lobes/one.glsl"
+}
+namespace cosine {
+#include "glsl/lobes/cosine.glsl"
 }
 namespace whole {
 #include "glsl/fresnel/lobe.glsl"
@@ -29,6 +55,13 @@ namespace towards {
 #include "glsl/edge/mirrored.glsl"
 namespace clipped {
 #include "glsl/clip/arc.glsl"
+}
+namespace own_horizon {
+using clipped::ClippedVector;
+#include "glsl/horizon/lobe.glsl"
+}  // namespace own_horizon
+namespace true_horizon {
+#include "glsl/horizon/true.glsl"
 }
 
 #include "glsl/dual_end.h"
@@ -72,7 +105,7 @@ TEST(Ltc, MirrorFrameStorageTurnsBack) {
   const double c = 0.3, s = std::sqrt(1.0 - c * c);
   const dvec4 m(1.7, -0.2, 0.4, 0.9);  // m0, m1, m2, m3
   const dvec4 stored(m[0] * c + m[2] * s, m[1] * c + m[3] * s, m[2] * c - m[0] * s, m[3] * c - m[1] * s);
-  EXPECT_LT(glm::length(dual::FromMirrorFrame(stored, c, s) - m), 1e-15);
+  EXPECT_LT(glm::length(dual::mirror::LtcUnturned(stored, c, s) - m), 1e-15);
 }
 
 // With the identity the transformed cosine is the clamped cosine, and nothing else than the Lambert form
@@ -141,30 +174,80 @@ dvec4 Sample(const std::vector<glm::vec4>& texels, int size, dvec2 uv) {
 }
 
 TEST(Ltc, TablesAreReadAsTheFitWroteThem) {
-  const auto check = [](FitKind kind, auto position, auto unpack) {
-    const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", kind);
-    ASSERT_EQ(tables.size, 64);  // TableCoordinates takes it for granted
-    std::mt19937_64 engine(3);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    for (int i = 0; i < 1000; ++i) {
-      const double roughness = uniform(engine), cosine = std::max(uniform(engine), dual::kMinViewCosine),
-                   sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
-      const LtcLookup expected = Look(tables, roughness, cosine);
-      const dvec2 uv = dual::TableCoordinates(roughness, position(cosine, sine));
-      const dvec4 m = unpack(Sample(tables.matrix, tables.size, uv), cosine, sine);
-      EXPECT_LT(glm::length(m - expected.m), 1e-9 * glm::length(m)) << roughness << ' ' << cosine;
-      EXPECT_LT(glm::length(Sample(tables.terms, tables.size, uv) - expected.terms), 1e-9);
-      // Facing is kept, and with it the polygon's order.
-      EXPECT_GT(m.x * m.w - m.y * m.z, 0.0) << roughness << ' ' << cosine;
+  using Position = double (*)(double, double);
+  using Normalised = dvec4 (*)(dvec4, dvec4);
+  using Unturned = dvec4 (*)(dvec4, double, double);
+  const Normalised norms[] = {dual::middle::LtcNormalised, dual::none::LtcNormalised,
+                              dual::last::LtcNormalised};
+  const Unturned frames[] = {dual::mirror::LtcUnturned, dual::normal::LtcUnturned};
+  for (const FitKind kind : {FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished}) {
+    for (const LtcStorage& storage : StoragesOf(kind)) {
+      SCOPED_TRACE(MatrixFile(kind, storage));
+      const Position root =
+          kind == FitKind::kPublished ? dual::l3::LtcViewPosition : dual::polygon::LtcViewPosition;
+      const Position positions[] = {root, dual::over_cos::LtcViewPosition, dual::over_theta::LtcViewPosition};
+      const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", kind, storage);
+      ASSERT_EQ(tables.size, 64);  // TableCoordinates takes it for granted
+      std::mt19937_64 engine(3);
+      std::uniform_real_distribution<double> uniform(0.0, 1.0);
+      for (int i = 0; i < 1000; ++i) {
+        const double roughness = uniform(engine), cosine = std::max(uniform(engine), dual::kMinViewCosine),
+                     sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
+        const LtcLookup expected = Look(tables, roughness, cosine);
+        const dvec2 uv =
+            dual::TableCoordinates(roughness, positions[static_cast<int>(storage.axis)](cosine, sine));
+        const dvec4 terms = Sample(tables.terms, tables.size, uv);
+        const dvec4 stored =
+            norms[static_cast<int>(storage.norm)](Sample(tables.matrix, tables.size, uv), terms);
+        const dvec4 m = frames[static_cast<int>(storage.frame)](stored, cosine, sine);
+        EXPECT_LT(glm::length(m - expected.m), 1e-9 * glm::length(m)) << roughness << ' ' << cosine;
+        EXPECT_LT(glm::length(terms - expected.terms), 1e-9 * (1.0 + glm::length(terms)));
+        // Facing is kept, and with it the polygon's order.
+        EXPECT_GT(m.x * m.w - m.y * m.z, 0.0) << roughness << ' ' << cosine;
+      }
     }
-  };
-  check(FitKind::kPolygon, dual::polygon::LtcViewPosition, dual::polygon::LtcUnpack);
-  check(FitKind::kCosine, dual::cosine::LtcViewPosition, dual::cosine::LtcUnpack);
-  check(FitKind::kPublished, dual::l3::LtcViewPosition, dual::l3::LtcUnpack);
+  }
+}
+
+// Both horizons against the fit's own polygon clipper; a light wholly below the surface's gives nothing.
+TEST(Ltc, TrueHorizonClipsTwice) {
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> uniform(-0.6, 0.6), size(0.1, 2.0);
+  int leaks = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const dvec4 m(1.0 + uniform(engine), uniform(engine), uniform(engine), 0.8 + uniform(engine));
+    if (m.x * m.w - m.y * m.z < 0.05) continue;
+    dual::RectangleView view;
+    view.center = RandomDirection(engine);
+    const dvec3 axis = RandomDirection(engine);
+    view.half_a = size(engine) * glm::normalize(glm::cross(axis, RandomDirection(engine)));
+    view.half_b = size(engine) * glm::normalize(glm::cross(axis, view.half_a));
+    if (glm::dot(glm::cross(view.half_a, view.half_b), view.center) > 0.0) view.half_b = -view.half_b;
+    // The part above the surface's horizon, transformed and clipped by LtcQuadIntegral, in strips of one
+    // quadrilateral each.
+    const std::array<dvec3, 4> corners{
+        view.center + view.half_a + view.half_b, view.center - view.half_a + view.half_b,
+        view.center - view.half_a - view.half_b, view.center + view.half_a - view.half_b};
+    std::vector<dvec3> above;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const dvec3 a = corners[k], b = corners[(k + 1) % 4];
+      if (a.z > 0.0) above.push_back(a);
+      if ((a.z > 0.0) != (b.z > 0.0)) above.push_back(a + (b - a) * (a.z / (a.z - b.z)));
+    }
+    double expected = 0.0;
+    for (std::size_t k = 2; k < above.size(); ++k)
+      expected += LtcQuadIntegral(m, {above[0], above[k - 1], above[k], above[k]});
+    const double both = dual::true_horizon::LobeVector(m, view).z;
+    const double own = dual::own_horizon::LobeVector(m, view).z;
+    EXPECT_NEAR(both, expected, 1e-6);
+    EXPECT_LT(both, own + 1e-6);
+    leaks += both < own - 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(leaks, 400);
 }
 
 TEST(Ltc, CosineLobeAddsTheFormFactorAndStaysALobe) {
-  EXPECT_EQ(dual::polygon::LtcLobe(0.4, 0.2, dvec4(1.0, 0.0, 0.5, 0.0)), 0.4);
+  EXPECT_EQ(dual::one::LtcLobe(0.4, 0.2, dvec4(1.0, 0.0, 0.5, 0.0)), 0.4);
   EXPECT_NEAR(dual::cosine::LtcLobe(0.4, 0.2, dvec4(1.0, 0.0, 0.5, 0.0)), 0.5, 1e-15);
   EXPECT_EQ(dual::cosine::LtcLobe(0.0, 0.2, dvec4(1.0, 0.0, -0.5, 0.0)), 0.0);
 }

@@ -1,0 +1,4 @@
+// One transformed cosine. Dual.
+
+// The lobe's integral from the transformed and the light's own form factor; the terms are as in glsl/fit.h.
+float LtcLobe(float transformed, float form_factor, vec4 terms) { return transformed; }
