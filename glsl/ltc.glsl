@@ -25,8 +25,7 @@ ShadingFrame MakeShadingFrame(vec3 normal, vec3 to_view) {
   frame.sine = min(sqrt(length2), 1.0);
   // Within 1e-4 rad of the normal the difference is rounding, and lobes are round: any tangent serves.
   if (length2 < 1e-8) {
-    vec3 axis = abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-    tangent = axis - normal * dot(normal, axis);
+    tangent = abs(normal.x) < 0.5 ? vec3(0.0, -normal.z, normal.y) : vec3(normal.z, 0.0, -normal.x);
     length2 = dot(tangent, tangent);
   }
   frame.tangent = tangent * inversesqrt(length2);

@@ -6,6 +6,7 @@
 struct VectorFormFactor {
   vec3 f;        // of the parallelogram in its own frame; of the light along its axes
   float size;    // |F|, the form factor in F's own direction
+  float inverse;  // 1/|F|, at most 1e15
   float height;  // F along the normal
 };
 
@@ -35,7 +36,9 @@ VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
   vec3 f = (t0 - t2) * p_a + (t1 - t3) * p_b - (t0 + t1 + t2 + t3) * a_b;
   VectorFormFactor result;
   result.f = f * (0.5 / kPi);
-  result.size = length(result.f);
+  float size2 = dot(result.f, result.f);
+  result.inverse = inversesqrt(max(size2, 1e-30));
+  result.size = size2 * result.inverse;
   result.height = result.f.z;
   return result;
 }
@@ -60,10 +63,10 @@ VectorFormFactor LambertVector(RectangleView view) {
   float along_y = y0 * y1;
   float a2 = view.half_size.x * view.half_size.x;
   float b2 = view.half_size.y * view.half_size.y;
-  float t0 = LambertEdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0);
-  float t1 = LambertEdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1);
-  float t2 = LambertEdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1);
-  float t3 = LambertEdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0);
+  float t0 = SideEdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0);
+  float t1 = SideEdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1);
+  float t2 = SideEdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1);
+  float t3 = SideEdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0);
   float alpha = view.half_size.x * (t0 - t2);
   float beta = view.half_size.y * (t1 - t3);
   float gamma = view.half_size.x * view.half_size.y * (t0 + t1 + t2 + t3);
@@ -71,7 +74,9 @@ VectorFormFactor LambertVector(RectangleView view) {
   vec3 f = vec3(-beta * p.z, alpha * p.z, beta * p.x - alpha * p.y - gamma);
   VectorFormFactor result;
   result.f = f * (0.5 / kPi);
-  result.size = length(result.f);
+  float size2 = dot(result.f, result.f);
+  result.inverse = inversesqrt(max(size2, 1e-30));
+  result.size = size2 * result.inverse;
   result.height = dot(view.horizon, result.f);
   return result;
 }
@@ -79,6 +84,6 @@ VectorFormFactor LambertVector(RectangleView view) {
 // Of the proxy sphere that has the same F, clipped at the horizon; ClippedSphere is the option "sphere".
 float ClippedProxy(VectorFormFactor f) {
   float size = min(f.size, 1.0);
-  float elevation = clamp(f.height / max(f.size, 1e-30), -1.0, 1.0);
+  float elevation = clamp(f.height * f.inverse, -1.0, 1.0);
   return AsFormFactor(ClippedSphere(size, elevation));
 }

@@ -89,10 +89,10 @@ float ClippedLambert(RectangleView view) {
   float l4 = sqrt(y4 * y4 + column4);
   float side_x2 = side_x * side_x;
   float side_y2 = side_y * side_y;
-  float t0 = LambertEdgeRatio(x0 * x + row0, l0 * l1, k.k0, side_x2 * row0);
-  float t1 = LambertEdgeRatio(y0 * y + column, l1 * lc, k.k1, side_y2 * column);
-  float t2 = LambertEdgeRatio(x * x4 + row, lc * l3, k.k2, side_x2 * row);
-  float t3 = LambertEdgeRatio(y * y4 + column4, l3 * l4, k.k3, side_y2 * column4);
+  float t0 = SideEdgeRatio(x0 * x + row0, l0 * l1, k.k0, side_x2 * row0);
+  float t1 = SideEdgeRatio(y0 * y + column, l1 * lc, k.k1, side_y2 * column);
+  float t2 = SideEdgeRatio(x * x4 + row, lc * l3, k.k2, side_x2 * row);
+  float t3 = SideEdgeRatio(y * y4 + column4, l3 * l4, k.k3, side_y2 * column4);
 
   float c_a = CrossZ(c, a);
   float c_b = CrossZ(c, b);

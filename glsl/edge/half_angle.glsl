@@ -2,32 +2,25 @@
 //
 // With m = |v0||v1|, d = v0·v1 and q = m + d, u = √(q/m) is √2 times the cosine of half the angle θ, and
 //   θ/|v0 × v1| = P(u)/√(m q), P(u) = √2 acos(u/√2)/√(1 − u²/2),
-// smooth on [0, √2]: minimax polynomial of degree 6, relative error 2.7e-6. In float, q has few digits left as θ nears π.
-float EdgePolynomial(float u) {
-  return 2.2214355 + u * (-0.999569718 + u * (0.550147783 + u * (-0.308655568 + u * (0.148588736 +
-         u * (-0.048631959 + u * 0.00748126049)))));
-}
-
-// Below any light's (length)⁴: 1e-30 is a light of 3e-8 m seen from as far. Keeps an edge through the point finite.
-const float kSmallestEdge = 1e-30;
+// smooth on [0, √2], by a polynomial. In float, q has few digits left as θ nears π.
+#include "half_angle_edge.glsl"
 
 // A corner as the edges want it: direction and length.
 vec4 EdgeVertex(vec3 v) { return vec4(v, length(v)); }
 
 // θ/line, θ the angle between v0 and v1, from d = v0·v1 and m = |v0||v1|, where |v0 × v1| = share · line, line2 = line².
-float EdgeRatio(float d, float m, float share, float line2) {
-  float q = m + d;
-  float i = inversesqrt(max(abs(m * q), kSmallestEdge));
-  return share * i * EdgePolynomial(q * i);
-}
+float EdgeRatio(float d, float m, float share, float line2) { return HalfAngleRatio(d, m, share); }
 
 // Of the light itself, for the diffuse lobe.
 float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
 
+// Of a side of the light itself, never of one in the horizon.
+float SideEdgeRatio(float d, float m, float share, float line2) { return LambertEdgeRatio(d, m, share, line2); }
+
 // θ itself; `area` = |v0 × v1|. Where the angle is obtuse the area says little, the half angle much: θ = P(u) √(2 − u²).
 float EdgeAngle(float d, float m, float area) {
   float q = m + d;
-  float i = inversesqrt(max(abs(m * q), kSmallestEdge));
+  float i = inversesqrt(m * abs(q) + kSmallestEdge);
   float u = q * i;
-  return EdgePolynomial(u) * (d > 0.0 ? i * area : sqrt(max(2.0 - u * u, 0.0)));
+  return WholeEdgePolynomial(u) * (d > 0.0 ? i * area : sqrt(max(2.0 - u * u, 0.0)));
 }

@@ -6,9 +6,10 @@
 // it meet size · y and 0 there, so that nothing leaks from below. c = √(1 − size) carries the singularity at size → 1.
 // Mean absolute error 0.0010, max 0.0055, least squares reweighted towards the largest errors of E/r.
 float ClippedSphere(float size, float elevation) {
-  float r = sqrt(size);
+  float inverse = inversesqrt(max(size, 1e-30));
+  float r = size * inverse;
   float c = sqrt(max(1.0 - size, 0.0));
-  float t = clamp(elevation / max(r, 1e-15), -1.0, 1.0);
+  float t = clamp(elevation * inverse, -1.0, 1.0);
   float t2 = t * t;
   float p = 0.002862 + c * (0.522738 - 0.253173 * c);
   float q = 0.015862 + c * (0.319367 - 0.433263 * c);

@@ -200,17 +200,23 @@ std::vector<PointCase> RandomCases(int count) {
 
 struct Difference {
   double rmse = 0.0, max = 0.0;
+  double p999 = 0.0;  // the difference that one case in a thousand exceeds
 };
 template <class Member>
 Difference Compare(const std::vector<Shaded>& a, const std::vector<Shaded>& b, Member member) {
   double squares = 0.0, reference = 0.0;
   Difference result;
+  std::vector<double> all;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double d = double{a[i].*member} - double{b[i].*member};
     squares += d * d;
     reference += double{b[i].*member} * double{b[i].*member};
     result.max = std::max(result.max, std::abs(d));
+    all.push_back(std::abs(d));
   }
+  const auto rank = all.begin() + static_cast<std::ptrdiff_t>(all.size() - 1 - all.size() / 1000);
+  std::nth_element(all.begin(), rank, all.end());
+  result.p999 = *rank;
   result.rmse = std::sqrt(squares / reference);
   return result;
 }
@@ -231,10 +237,10 @@ TEST_F(LtcTechnique, FloatAgainstTheSameTextInDouble) {
     double diffuse_rmse, diffuse_max, specular_rmse, specular_max;
   };
   for (const Limit& limit : {
-           Limit{"ltc", 2e-6, 1e-4, 4e-6, 1e-4},                 // measured 7.3e-7, 1.8e-5, 9.2e-7, 1.2e-5
+           Limit{"ltc", 2e-6, 1e-4, 4e-6, 1e-4},                 // measured 8.0e-7, 2.0e-5, 1.4e-6, 3.9e-5
            Limit{"ltc+clip=switch", 2e-6, 1e-4, 4e-6, 1e-4},     // measured 1.8e-7, 1.6e-6, 9.1e-7, 1.1e-5
            Limit{"ltc+edge=half_angle", 1e-5, 5e-4, 1e-2, 0.5},  // measured 1.3e-6, 2.5e-5, 2.7e-3, 0.10
-           Limit{"hill", 1e-4, 3e-3, 1e-4, 3e-3},                // measured 1.3e-5, 3.3e-4, 9.7e-6, 2.1e-4
+           Limit{"hill", 1e-4, 3e-3, 1e-4, 3e-3},                // measured 1.7e-5, 4.0e-4, 1.6e-6, 2.9e-5
        }) {
     SCOPED_TRACE(limit.variant);
     const auto in_float = Shade(limit.variant, cases),
@@ -243,6 +249,12 @@ TEST_F(LtcTechnique, FloatAgainstTheSameTextInDouble) {
     EXPECT_TRUE(IsSound(in_double));
     const Difference diffuse = Compare(in_float, in_double, &Shaded::diffuse);
     const Difference specular = Compare(in_float, in_double, &Shaded::specular);
+    // Of the most that a light of radiance 1 can give, 1. Measured 6e-7 and 2.4e-6, 1.2e-5 and 3.6e-6.
+    const bool is_default = std::string(limit.variant).find('+') == std::string::npos;
+    if (is_default) {
+      EXPECT_LT(diffuse.p999, 2e-5);
+      EXPECT_LT(specular.p999, 2e-5);
+    }
     EXPECT_LT(diffuse.rmse, limit.diffuse_rmse);
     EXPECT_LT(diffuse.max, limit.diffuse_max);
     EXPECT_LT(specular.rmse, limit.specular_rmse);
@@ -323,8 +335,8 @@ TEST_F(LtcTechnique, NoStepAsTheViewerPassesTheNormal) {
 }
 
 // Two ways to the same integral, in double. The diffuse arc works in the light's own axes, which as floats
-// are perpendicular to 1e-7 only: measured 7.2e-7; the specular one differs by rounding alone: measured
-// 4e-16.
+// are perpendicular to 1e-7 only, and takes the light's sides by another polynomial; the specular one differs
+// by rounding alone: measured 4e-16.
 TEST_F(LtcTechnique, TheExactClipsAgree) {
   const auto cases = RandomCases(1 << 14);
   const auto arc = Shade("ltc", cases, Precision::kDouble),

@@ -91,6 +91,9 @@ double EdgeRatio(double d, double, double share, double line2) {
 double LambertEdgeRatio(double d, double m, double share, double line2) {
   return EdgeRatio(d, m, share, line2);
 }
+double SideEdgeRatio(double d, double m, double share, double line2) {
+  return EdgeRatio(d, m, share, line2);
+}
 namespace arc {
 #include "glsl/clip/arc.glsl"
 }
@@ -263,8 +266,8 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
     const bool possible = pattern != 5 && pattern != 10;
     EXPECT_EQ(patterns[static_cast<std::size_t>(pattern)] > 0, possible) << "corners above: " << pattern;
   }
-  // The polynomial's 7.1e-8; measured 4.6e-8, 4.8e-8, 4.8e-8.
-  EXPECT_LT(mirrored_lambert.error, 1.5e-7);
+  // The polynomials' 2.7e-6 on the light's own sides, 7.1e-8 elsewhere; measured 2.3e-6, 4.8e-8, 4.8e-8.
+  EXPECT_LT(mirrored_lambert.error, 5e-6);
   EXPECT_LT(mirrored.error, 1.5e-7);
   EXPECT_LT(mirrored_switched.error, 1.5e-7);
   // The clip itself, with exact edges: measured 2.4e-14, 1.7e-13, 2.4e-14; the vector 4.2e-11.
