@@ -1,7 +1,7 @@
 /*---
 summary = "The point of a sphere nearest to the mirror ray stands for it in the specular lobe, dimmed for the widening; diffuse as from a point"
 citation = "Karis 2013"
-author_note = "Real Shading in Unreal Engine 4, 'Area Lights': representative point (eq. 11), normalisation (eq. 14), the diffuse lobe as a point light's, which above the horizon is a sphere's; in the published form his windowed fall-off (eq. 9). For eq. 14 the notes point back to eq. 10, whose radius / (3 distance) is widening=third; his engine's code has radius / (2 distance), which alone keeps a mirror's radiance at normal incidence, and is taken for his form. The BRDF is the scene's, not his (Schlick's masking with a remapped roughness). He has spheres and tubes: no rectangle, no disk; tubes are no light of a scene here. The engine later changed both the normalisation and the horizon"
+author_note = "Real Shading in Unreal Engine 4, 'Area Lights': representative point (eq. 11), normalisation (eq. 14), the diffuse lobe as a point light's, which above the horizon is a sphere's; in the published form his windowed fall-off (eq. 9). For eq. 14 the notes point back to eq. 10, whose radius / (3 distance) is widening=third; his engine's code has radius / (2 distance), which alone keeps a mirror's radiance at normal incidence, and is taken for his form. Neither keeps it elsewhere: a mirror shows the sphere's radiance over n.v (third: 9/4 of that), which his engine's later form mends. The BRDF is the scene's, not his (Schlick's masking with a remapped roughness). He has spheres and tubes: no rectangle, no disk; tubes are no light of a scene here. The engine later changed both the normalisation and the horizon"
 shapes = ["sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]

@@ -237,7 +237,7 @@ TEST_F(ImageCheck, ThePageShowsTheFailureAndHowToRepeatIt) {
   EXPECT_THAT(html, Not(HasSubstr("<h2>gloss: drobot")));
 }
 
-// The stored goldens tell any two variants of a scene's list apart, somewhere.
+// The stored goldens tell any two variants that share a scene apart, somewhere.
 TEST(StoredGoldens, TellAnyTwoVariantsApart) {
   std::map<std::string, std::map<std::string, RadianceImage>> scenes;
   std::set<std::string> variants;
@@ -251,13 +251,14 @@ TEST(StoredGoldens, TellAnyTwoVariantsApart) {
   for (const std::string& a : variants) {
     for (const std::string& b : variants) {
       if (a == b) continue;
-      bool told = false;
+      bool shared = false, told = false;
       for (const auto& [scene, images] : scenes) {
         const auto first = images.find(a), second = images.find(b);
         if (first == images.end() || second == images.end()) continue;
+        shared = true;
         told = told || TestGolden(first->second, second->second).has_value();
       }
-      EXPECT_TRUE(told) << a << " and " << b;
+      EXPECT_TRUE(told || !shared) << a << " and " << b;
     }
   }
 }
