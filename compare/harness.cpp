@@ -107,6 +107,22 @@ std::vector<PairResult> MeasurePairs(const std::vector<VariantResult>& variants)
   return pairs;
 }
 
+ShadowResult Describe(const ShadowedTruth& shadowed, const RadianceImage& unshadowed) {
+  ShadowResult result;
+  const std::vector<glm::vec3> with = TotalRadiance(shadowed.radiance), without = TotalRadiance(unshadowed);
+  const ErrorMetrics missing = CompareImages(without, with, unshadowed.width);
+  result.rel_rmse = missing.rel_rmse;
+  result.bias = missing.bias;
+  result.light_lost = missing.bias / (1.0 + missing.bias);
+  result.mean_error = shadowed.mean_error;
+  result.p99_error = shadowed.p99_error;
+  result.seconds = shadowed.seconds;
+  result.cached = shadowed.cached;
+  // Not measured: where all light is lost.
+  if (!(missing.rel_rmse < kLeastShadow)) result.image = std::make_shared<const RadianceImage>(shadowed.radiance);
+  return result;
+}
+
 }  // namespace
 
 std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pixels) {
@@ -139,8 +155,12 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     const SurfacePixels& pixels = renderer.DrawScene(scene, options.size);
 
     TruthOptions truth_options = options.truth;
-    truth_options.progress = [&](double fraction) { report("truth", 0.5 * fraction); };
+    truth_options.progress = [&](double fraction) { report("truth", 0.35 * fraction); };
     const Truth truth = CachedTruth(scene, pixels, truth_options, options.cache);
+    ShadowOptions shadow_options = options.shadow;
+    shadow_options.progress = [&](double fraction) { report("truth with shadows", 0.35 + 0.15 * fraction); };
+    const ShadowedTruth shadowed =
+        CachedShadowedTruth(scene, pixels, truth.radiance, truth_options, shadow_options, options.cache);
 
     SceneResult result;
     result.name = scene.name;
@@ -157,6 +177,7 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     result.truth_seconds = truth.seconds;
     result.truth_cached = truth.cached;
     result.truth = std::make_shared<const RadianceImage>(truth.radiance);
+    result.shadow = Describe(shadowed, truth.radiance);
     result.lit_pixels = CountLit(truth.radiance);
     result.emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(scene, pixels));
 

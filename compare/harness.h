@@ -10,6 +10,7 @@
 
 #include "compare/context.h"
 #include "compare/results.h"
+#include "compare/shadowed_truth.h"
 #include "compare/truth.h"
 #include "glsl/renderer.h"
 #include "glsl/shader_library.h"
@@ -22,6 +23,7 @@ struct CompareOptions {
   std::vector<Variant> variants;
   glm::ivec2 size{512, 512};
   TruthOptions truth;
+  ShadowOptions shadow;
   std::filesystem::path cache;                               // folder of truths that are already known
   std::optional<Variant> timed_against;                      // `point`, where the passes are to be timed
   std::function<void(const std::string&, double)> progress;  // what is being done, fraction of the whole

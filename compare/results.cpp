@@ -52,6 +52,17 @@ Json VariantJson(const VariantResult& variant) {
   return json;
 }
 
+Json ShadowJson(const std::optional<ShadowResult>& shadow) {
+  if (!shadow) return nullptr;
+  return {{"present", shadow->image != nullptr},
+          {"light_lost", Number(shadow->light_lost)},
+          {"bias", Number(shadow->bias)},
+          {"rel_rmse", Number(shadow->rel_rmse)},
+          {"error", {{"mean", Number(shadow->mean_error)}, {"p99", Number(shadow->p99_error)}}},
+          {"seconds", Number(shadow->seconds)},
+          {"cached", shadow->cached}};
+}
+
 Json SceneJson(const SceneResult& scene) {
   Json json;
   json["name"] = scene.name;
@@ -65,7 +76,8 @@ Json SceneJson(const SceneResult& scene) {
   json["lit_pixels"] = scene.lit_pixels;
   json["truth"] = {{"relative_error", Number(scene.truth_relative_error)},
                    {"seconds", Number(scene.truth_seconds)},
-                   {"cached", scene.truth_cached}};
+                   {"cached", scene.truth_cached},
+                   {"shadow", ShadowJson(scene.shadow)}};
   json["variants"] = Json::array();
   for (const VariantResult& variant : scene.variants) json["variants"].push_back(VariantJson(variant));
   json["pairs"] = Json::array();

@@ -49,6 +49,18 @@ struct PairResult {  // of variant b as reference
   double rel_rmse = kNotMeasured;
 };
 
+// Truth with visibility beside the unshadowed truth; compare/shadowed_truth.h.
+struct ShadowResult {
+  // Σ(u−s)/Σu, the share of all light that shadows take; of the unshadowed truth u against the shadowed s.
+  double light_lost = kNotMeasured, bias = kNotMeasured, rel_rmse = kNotMeasured;
+  // Standard error of a pixel that needed rays, relative to its unshadowed radiance.
+  double mean_error = kNotMeasured, p99_error = kNotMeasured;
+  double seconds = kNotMeasured;
+  bool cached = false;
+  std::shared_ptr<const RadianceImage> image;  // null where no shadow matters: rel_rmse below kLeastShadow
+};
+constexpr double kLeastShadow = 1e-3;
+
 struct SceneResult {
   std::string name, question, file, unit;  // unit: "W/(m² sr)" or "cd/m²"
   int width = 0, height = 0;
@@ -58,6 +70,7 @@ struct SceneResult {
   double truth_relative_error = kNotMeasured, truth_seconds = kNotMeasured;
   bool truth_cached = false;
   std::shared_ptr<const RadianceImage> truth;
+  std::optional<ShadowResult> shadow;
   std::shared_ptr<const std::vector<glm::vec3>> emission;  // radiance of emitters seen directly, per pixel
   std::vector<VariantResult> variants;
   std::vector<PairResult> pairs;

@@ -7,7 +7,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "compare/truth_bands.h"
 
@@ -18,6 +20,24 @@ constexpr double kMinAlpha = 1e-4;  // as in glsl/surface.glsl
 
 }  // namespace
 
+std::optional<ShadedPixel> ShadedPixelAt(const SurfacePixels& pixels, std::size_t i) {
+  if (!pixels.IsSurface(i)) return std::nullopt;
+  ShadedPixel pixel;
+  pixel.point.position = glm::dvec3(pixels.position[i]);
+  pixel.point.normal = glm::normalize(glm::dvec3(pixels.normal[i]));
+  pixel.point.to_view = glm::normalize(glm::dvec3(pixels.view_position) - pixel.point.position);
+  double roughness = static_cast<double>(pixels.normal[i].w);
+  pixel.point.alpha = std::max(roughness * roughness, kMinAlpha);
+  if (!(glm::dot(pixel.point.normal, pixel.point.to_view) > 0.0)) return std::nullopt;
+  glm::dvec3 base(pixels.base_color[i]);
+  double metalness = static_cast<double>(pixels.base_color[i].w);
+  pixel.albedo = base * (1.0 - metalness);
+  pixel.f0 = glm::mix(glm::dvec3(0.04), base, metalness);
+  return pixel;
+}
+
+namespace {
+
 TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_begin, int row_end,
                     double tolerance) {
   TruthBand band;
@@ -27,26 +47,13 @@ TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_beg
   band.diffuse.resize(end - begin, glm::vec3(0.0f));
   band.specular.resize(end - begin, glm::vec3(0.0f));
   band.relative_error.resize(end - begin, 0.0f);
-  glm::dvec3 camera(pixels.view_position);
   for (std::size_t i = begin; i < end; ++i) {
-    if (!pixels.IsSurface(i)) {
-      continue;
-    }
-    ShadingPoint point;
-    point.position = glm::dvec3(pixels.position[i]);
-    point.normal = glm::normalize(glm::dvec3(pixels.normal[i]));
-    point.to_view = glm::normalize(camera - point.position);
-    double roughness = static_cast<double>(pixels.normal[i].w);
-    point.alpha = std::max(roughness * roughness, kMinAlpha);
-    if (!(glm::dot(point.normal, point.to_view) > 0.0)) {
-      continue;  // faces turned away from the viewer shade black
-    }
-    glm::dvec3 base(pixels.base_color[i]);
-    double metalness = static_cast<double>(pixels.base_color[i].w);
-    glm::dvec3 albedo = base * (1.0 - metalness), f0 = glm::mix(glm::dvec3(0.04), base, metalness);
+    const std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
+    if (!pixel) continue;
+    const glm::dvec3 &albedo = pixel->albedo, &f0 = pixel->f0;
     glm::dvec3 diffuse(0.0), specular(0.0), error(0.0);
     for (const Light& light : scene.lights) {
-      LightIntegrals s = IntegrateLight(point, light, tolerance);
+      LightIntegrals s = IntegrateLight(pixel->point, light, tolerance);
       diffuse += albedo * light.radiance * s.form_factor;
       specular += light.radiance * (f0 * (s.specular - s.specular_grazing) + s.specular_grazing);
       error += light.radiance *
@@ -62,28 +69,45 @@ TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_beg
   return band;
 }
 
-Truth AssembleTruth(const SurfacePixels& pixels, std::vector<TruthBand> bands) {
-  Truth truth;
-  truth.radiance.width = pixels.width;
-  truth.radiance.height = pixels.height;
-  for (TruthBand& band : bands) {
+}  // namespace
+
+BandShader UnshadowedBands(const Scene& scene, const SurfacePixels& pixels, double tolerance) {
+  return [&scene, &pixels, tolerance](int row_begin, int row_end) {
+    return ShadeBand(scene, pixels, row_begin, row_end, tolerance);
+  };
+}
+
+TruthBand JoinBands(std::vector<TruthBand> bands) {
+  TruthBand whole;
+  for (const TruthBand& band : bands) {
     auto append = [](auto& all, const auto& part) { all.insert(all.end(), part.begin(), part.end()); };
-    append(truth.radiance.diffuse, band.diffuse);
-    append(truth.radiance.specular, band.specular);
-    append(truth.relative_error, band.relative_error);
-    truth.seconds += band.seconds;
+    append(whole.diffuse, band.diffuse);
+    append(whole.specular, band.specular);
+    append(whole.relative_error, band.relative_error);
+    whole.seconds += band.seconds;
   }
+  return whole;
+}
+
+double Quantile(std::vector<float> values, double share) {
+  if (values.empty()) return 0.0;
+  auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return static_cast<double>(values[static_cast<std::size_t>(rank)]);
+}
+
+Truth AssembleTruth(const SurfacePixels& pixels, TruthBand whole) {
+  Truth truth;
+  truth.radiance = {pixels.width, pixels.height, std::move(whole.diffuse), std::move(whole.specular)};
+  truth.relative_error = std::move(whole.relative_error);
+  truth.seconds = whole.seconds;
   std::vector<float> lit;
   for (std::size_t i = 0; i < truth.relative_error.size(); ++i) {
     if (truth.radiance.Total(i) != glm::vec3(0.0f)) {
       lit.push_back(truth.relative_error[i]);
     }
   }
-  if (!lit.empty()) {
-    auto rank = static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(lit.size() - 1) + 0.5);
-    std::nth_element(lit.begin(), lit.begin() + rank, lit.end());
-    truth.worst_relative_error = static_cast<double>(lit[static_cast<std::size_t>(rank)]);
-  }
+  truth.worst_relative_error = Quantile(std::move(lit), 0.999);
   return truth;
 }
 
@@ -91,13 +115,14 @@ Truth ComputeTruth(const Scene& scene, const SurfacePixels& pixels, const TruthO
   auto start = std::chrono::steady_clock::now();
   int band_count = (pixels.height + kTruthBandRows - 1) / kTruthBandRows;
   std::vector<TruthBand> bands(static_cast<std::size_t>(band_count));
-  ShadeBands(scene, pixels, options, bands, std::vector<bool>(bands.size(), true), {});
-  Truth truth = AssembleTruth(pixels, std::move(bands));
+  ShadeBands(pixels.height, UnshadowedBands(scene, pixels, options.tolerance), options.progress, bands,
+             std::vector<bool>(bands.size(), true), {});
+  Truth truth = AssembleTruth(pixels, JoinBands(std::move(bands)));
   truth.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return truth;
 }
 
-void ShadeBands(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options,
+void ShadeBands(int height, const BandShader& shade, const std::function<void(double)>& progress,
                 std::vector<TruthBand>& bands, const std::vector<bool>& wanted,
                 const std::function<void(int, const TruthBand&)>& done) {
   // Progress comes from the calling thread alone: it looks at the count after each of its own bands.
@@ -114,21 +139,20 @@ void ShadeBands(const Scene& scene, const SurfacePixels& pixels, const TruthOpti
           }
           auto start = std::chrono::steady_clock::now();
           int row = static_cast<int>(b) * kTruthBandRows;
-          bands[b] =
-              ShadeBand(scene, pixels, row, std::min(row + kTruthBandRows, pixels.height), options.tolerance);
+          bands[b] = shade(row, std::min(row + kTruthBandRows, height));
           bands[b].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
           if (done) {
             done(static_cast<int>(b), bands[b]);
           }
           std::size_t count = ++finished;
-          if (options.progress && std::this_thread::get_id() == caller) {
-            options.progress(static_cast<double>(count) / total);
+          if (progress && std::this_thread::get_id() == caller) {
+            progress(static_cast<double>(count) / total);
           }
         }
       },
       tbb::simple_partitioner());
-  if (options.progress) {
-    options.progress(1.0);
+  if (progress) {
+    progress(1.0);
   }
 }
 

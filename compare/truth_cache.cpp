@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -15,6 +16,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "compare/shadowed_truth.h"
 #include "compare/truth_bands.h"
 
 namespace arealab {
@@ -22,6 +24,7 @@ namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
 constexpr std::uint64_t kVersion = 4;
+constexpr std::uint64_t kShadowVersion = 1;  // of the visibility on top of it
 constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
 
 // FNV-1a over 64-bit words, in two lanes that start apart and turn differently; not against malice.
@@ -146,10 +149,7 @@ void Write(const std::filesystem::path& file, const std::string& key, int width,
   }
 }
 
-}  // namespace
-
-std::string TruthKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
-  Hash hash;
+void AddTruth(Hash& hash, const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
   hash.Value(kVersion);
   hash.Value(options.tolerance);
   hash.Value(pixels.width);
@@ -169,20 +169,41 @@ std::string TruthKey(const Scene& scene, const SurfacePixels& pixels, const Trut
   hash.Bytes(pixels.position.data(), pixels.position.size() * sizeof(glm::vec4));
   hash.Bytes(pixels.normal.data(), pixels.normal.size() * sizeof(glm::vec4));
   hash.Bytes(pixels.base_color.data(), pixels.base_color.size() * sizeof(glm::vec4));
+}
+
+}  // namespace
+
+std::string TruthKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
+  Hash hash;
+  AddTruth(hash, scene, pixels, options);
   return hash.Text();
 }
 
-Truth CachedTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options,
-                  const std::filesystem::path& cache_folder) {
-  const std::string key = TruthKey(scene, pixels, options);
+std::string ShadowKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& truth_options,
+                      const ShadowOptions& options) {
+  Hash hash;
+  AddTruth(hash, scene, pixels, truth_options);
+  hash.Value(kShadowVersion);
+  hash.Value(options.tolerance);
+  for (const Mesh& mesh : scene.meshes) {
+    hash.Value(mesh.vertices.size());
+    hash.Value(mesh.indices.size());
+    for (const Vertex& vertex : mesh.vertices) {
+      hash.Bytes(&vertex.position, sizeof vertex.position);
+      hash.Bytes(&vertex.normal, sizeof vertex.normal);
+    }
+    hash.Bytes(mesh.indices.data(), mesh.indices.size() * sizeof mesh.indices[0]);
+  }
+  return hash.Text();
+}
+
+CachedPicture CachedBands(const SurfacePixels& pixels, const std::string& key,
+                          const std::function<BandShader()>& make_shader,
+                          const std::function<void(double)>& progress, const std::filesystem::path& cache_folder) {
   const std::filesystem::path whole_file = cache_folder / (key + ".truth"),
                               parts = cache_folder / (key + ".parts");
   if (auto whole = Read(whole_file, key, pixels.width, pixels.height)) {
-    std::vector<TruthBand> one;
-    one.push_back(std::move(*whole));
-    Truth truth = AssembleTruth(pixels, std::move(one));
-    truth.cached = true;
-    return truth;
+    return {std::move(*whole), true};
   }
   auto start = std::chrono::steady_clock::now();
   std::error_code ignored;
@@ -201,15 +222,24 @@ Truth CachedTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOp
       wanted[static_cast<std::size_t>(b)] = false;
     }
   }
-  ShadeBands(scene, pixels, options, bands, wanted,
+  const bool missing = std::find(wanted.begin(), wanted.end(), true) != wanted.end();
+  ShadeBands(pixels.height, missing ? make_shader() : BandShader(), progress, bands, wanted,
              [&](int b, const TruthBand& band) { Write(part_file(b), key, pixels.width, rows(b), band); });
-  Truth truth = AssembleTruth(pixels, std::move(bands));
-  truth.seconds =
+  TruthBand whole = JoinBands(std::move(bands));
+  whole.seconds =
       reused_seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-
-  TruthBand whole{truth.radiance.diffuse, truth.radiance.specular, truth.relative_error, truth.seconds};
   Write(whole_file, key, pixels.width, pixels.height, whole);
   std::filesystem::remove_all(parts, ignored);
+  return {std::move(whole), false};
+}
+
+Truth CachedTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options,
+                  const std::filesystem::path& cache_folder) {
+  CachedPicture picture = CachedBands(
+      pixels, TruthKey(scene, pixels, options),
+      [&] { return UnshadowedBands(scene, pixels, options.tolerance); }, options.progress, cache_folder);
+  Truth truth = AssembleTruth(pixels, std::move(picture.whole));
+  truth.cached = picture.cached;
   return truth;
 }
 

@@ -3,7 +3,7 @@
 (() => {
 const results = JSON.parse(document.getElementById("results").textContent);
 const LOBES = ["total", "diffuse", "specular"];
-const TRUTH = "truth";
+const TRUTH = "truth", SHADOWED = "truth-shadowed";
 const reduceMotion = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 // ---------------------------------------------------------------- small tools
@@ -27,7 +27,8 @@ const clamp = (v, lo, hi) => Math.min(hi, Math.max(lo, v));
 const known = (v) => typeof v === "number" && Number.isFinite(v);
 const variantsOf = (scene) => scene.variants.filter((v) => v.stem);
 const variantNamed = (scene, name) => scene.variants.find((v) => v.name === name);
-const label = (scene, name) => name === TRUTH ? "truth" : (variantNamed(scene, name) || { short_name: name }).short_name || name;
+const shadowOf = (scene) => scene.truth.shadow && scene.truth.shadow.stem ? scene.truth.shadow : null;
+const label = (scene, name) => name === TRUTH ? "truth" : name === SHADOWED ? "truth, shadowed" : (variantNamed(scene, name) || { short_name: name }).short_name || name;
 
 // Percent with about three figures; `tight` for matrix cells, at most four characters.
 function percent(v, tight) {
@@ -288,7 +289,7 @@ function settle() {
   if (!results.scenes.length) return;
   scene = results.scenes.find((s) => s.name === state.scene) || results.scenes[0];
   state.scene = scene.name;
-  const usable = (name) => name === TRUTH ? scene.truth.stem : (variantNamed(scene, name) || {}).stem;
+  const usable = (name) => name === TRUTH ? scene.truth.stem : name === SHADOWED ? shadowOf(scene) : (variantNamed(scene, name) || {}).stem;
   if (!usable(state.a)) {
     const ranked = variantsOf(scene).filter((v) => !v.within_truth_error && known(v.error.total.rel_rmse));
     ranked.sort((p, q) => p.error.total.rel_rmse - q.error.total.rel_rmse);
@@ -410,7 +411,7 @@ function buildScene() {
       s.file ? fact("file", s.file) : null));
 
   // Controls
-  const names = [...(s.truth.stem ? [TRUTH] : []), ...variantsOf(s).map((v) => v.name)];
+  const names = [...(s.truth.stem ? [TRUTH] : []), ...(shadowOf(s) ? [SHADOWED] : []), ...variantsOf(s).map((v) => v.name)];
   const picker = (key) => h("select", { "aria-label": `Image ${key.toUpperCase()}`, onchange: (e) => set({ [key]: e.target.value }) },
     names.map((n) => h("option", { value: n, text: label(s, n) })));
   ui.a = picker("a");
@@ -457,6 +458,8 @@ function buildScene() {
     h("figure", { class: "pane inspector" }, h("figcaption", {}, h("span", { text: "Value under the pointer" }), ui.where), ui.values)));
 
   section.append(buildThumbs(s), buildTable(s));
+  delete ui.shadow;
+  if (s.truth.shadow) section.append(buildShadow(s));
   const pairs = buildPairs(s), plot = buildPlot(s);
   const crowded = variantsOf(s).length > 13;
   section.append(pairs && plot && !crowded ? h("div", { class: "two" }, pairs, plot) : h("div", {}, pairs, plot));
@@ -473,7 +476,8 @@ function buildThumbs(s) {
     (t) => set(t === "pictures" ? { thumbs: t } : { thumbs: t, map: t }));
   ui.thumbs = new Map();
   const grid = h("div", { class: "thumbs" });
-  const entries = [...(s.truth.stem ? [{ name: TRUTH, stem: "truth" }] : []), ...variantsOf(s)];
+  const entries = [...(s.truth.stem ? [{ name: TRUTH, stem: "truth" }] : []),
+    ...(shadowOf(s) ? [{ name: SHADOWED, stem: shadowOf(s).stem, summary: "ground truth with visibility: nothing is ranked against it" }] : []), ...variantsOf(s)];
   for (const v of entries) {
     const path = `images/${encodeURIComponent(s.folder)}/${encodeURIComponent(v.stem)}.png`;
     const picture = h("img", { class: "shot", src: path, width: s.width, height: s.height, style: { height: "auto" }, decoding: "async", alt: `${label(s, v.name)}: picture` });
@@ -490,6 +494,28 @@ function buildThumbs(s) {
   return h("section", {}, h("div", { class: "head" }, h("h3", { text: "All variants side by side" }), ui.thumbMode,
     h("p", { class: "note", text: "Choose a picture to see it as A; its B button puts it on the other side of the wipe. Error maps are against truth, on the scale above." })), grid);
 }
+
+// What shadows take, as a map of its own: techniques cast none, so it counts against nobody.
+function buildShadow(s) {
+  const shadow = s.truth.shadow, head = h("div", { class: "head" }, h("h3", { text: "The missing shadow" }));
+  if (!shadow.stem) {
+    head.append(h("p", { class: "note", text: "No shadow in this scene: " +
+      (shadow.rel_rmse > 0 ? `what stands between the lights and the pixels changes truth by ${percent(shadow.rel_rmse)} % (relative RMSE).` : "nothing stands between the lights and the pixels.") }));
+    return h("section", { class: "shadow" }, head);
+  }
+  head.append(h("p", { class: "note" },
+    `Shadows take ${percent(shadow.light_lost)} % of this scene's light. Techniques cast none and are ranked against truth without them; against truth with them, truth itself has a relative RMSE of ${percent(shadow.rel_rmse)} % and a bias of ${signed(percent(shadow.bias))} %. ` +
+    `Where rays were needed, shadowed truth has a standard error of ${percent(shadow.error.mean)} % on average and ${percent(shadow.error.p99)} % at the 99th percentile, relative to the pixel without shadows. It took ${seconds(shadow.seconds)}${shadow.cached ? " (now from the cache)" : ""}. `,
+    h("button", { type: "button", class: "link", text: "Open the pair above", onclick: () => { set({ a: TRUTH, b: SHADOWED, range: SHADOW_RANGE, map: "signed", log: true }); scrollToScene(); } })));
+  const map = newCanvas(s.width, s.height), bar = newCanvas(512, 1), ticks = h("div", { class: "ticks" });
+  paintScale(bar, ticks, "signed", SHADOW_RANGE, true);
+  ui.shadow = { map, painted: "" };
+  return h("section", { class: "shadow" }, head, h("figure", { class: "pane" },
+    h("figcaption", {}, h("span", { text: "truth relative to truth, shadowed" })), map,
+    h("div", { class: "under legend" }, h("div", { class: "bar" }, bar), ticks,
+      h("p", { text: "Orange: the missing shadow leaves truth too bright. Logarithmic, the same scale in every scene." }))));
+}
+const SHADOW_RANGE = 1;
 
 const COLUMNS = [
   ["name", "variant", (v) => v.short_name || v.name],
@@ -839,21 +865,25 @@ function drawViews() {
   }
 }
 
-function drawLegend() {
-  const bar = ui.bar.getContext("2d"), pixels = bar.createImageData(512, 1);
+function paintScale(canvas, ticks, kind, r, log) {
+  const bar = canvas.getContext("2d"), pixels = bar.createImageData(512, 1);
   for (let i = 0; i < 512; ++i) {
-    const t = i / 511, color = state.map === "signed" ? maps.signed[Math.round((2 * t - 1) * MAP_STEPS) + MAP_STEPS] : maps.magnitude[Math.round(t * MAP_STEPS)];
+    const t = i / 511, color = kind === "signed" ? maps.signed[Math.round((2 * t - 1) * MAP_STEPS) + MAP_STEPS] : maps.magnitude[Math.round(t * MAP_STEPS)];
     pixels.data.set([...color, 255], 4 * i);
   }
   bar.putImageData(pixels, 0, 0);
-  const r = range(), text = (v) => `${Number((100 * v).toPrecision(3))}`;
-  let marks = state.log ? [[1, r], [0.5, r / 10]] : [[1, r], [0.5, r / 2]];
-  if (state.map === "signed") marks = [...marks.map(([t, v]) => [0.5 - t / 2, -v]), [0.5, state.log ? r / 100 : 0], ...marks.map(([t, v]) => [0.5 + t / 2, v])];
-  else marks = [[0, state.log ? r / 100 : 0], ...marks];
-  ui.ticks.replaceChildren(...marks.map(([t, v]) => {
-    const least = state.log && t === (state.map === "signed" ? 0.5 : 0);
-    return h("span", { style: { left: `${100 * t}%` }, text: (least ? "< " : v > 0 && state.map === "signed" ? "+" : v < 0 ? "−" : "") + text(Math.abs(v)) + " %" });
+  const text = (v) => `${Number((100 * v).toPrecision(3))}`;
+  let marks = log ? [[1, r], [0.5, r / 10]] : [[1, r], [0.5, r / 2]];
+  if (kind === "signed") marks = [...marks.map(([t, v]) => [0.5 - t / 2, -v]), [0.5, log ? r / 100 : 0], ...marks.map(([t, v]) => [0.5 + t / 2, v])];
+  else marks = [[0, log ? r / 100 : 0], ...marks];
+  ticks.replaceChildren(...marks.map(([t, v]) => {
+    const least = log && t === (kind === "signed" ? 0.5 : 0);
+    return h("span", { style: { left: `${100 * t}%` }, text: (least ? "< " : v > 0 && kind === "signed" ? "+" : v < 0 ? "−" : "") + text(Math.abs(v)) + " %" });
   }));
+}
+
+function drawLegend() {
+  paintScale(ui.bar, ui.ticks, state.map, range(), state.log);
   const b = label(scene, state.b), a = label(scene, state.a), f = floorOf();
   ui.legendText.textContent = (state.map === "signed"
     ? `(Y(A) − Y(B)) / max(Y(B), floor), Y luminance: blue where ${a} is darker than ${b}, orange where brighter. `
@@ -894,7 +924,7 @@ function drawThumbs() {
     const v = variantNamed(scene, name);
     thumb.box.classList.toggle("is-a", name === state.a);
     thumb.box.classList.toggle("is-b", name === state.b);
-    thumb.error.textContent = name === TRUTH ? (known(scene.truth.relative_error) ? `± ${percent(scene.truth.relative_error)} %` : "") : known(v.error[state.lobe].rel_rmse) ? percent(v.error[state.lobe].rel_rmse) + " %" : v.nonfinite_pixels ? "non-finite" : "–";
+    thumb.error.textContent = name === SHADOWED ? "not ranked" : name === TRUTH ? (known(scene.truth.relative_error) ? `± ${percent(scene.truth.relative_error)} %` : "") : known(v.error[state.lobe].rel_rmse) ? percent(v.error[state.lobe].rel_rmse) + " %" : v.nonfinite_pixels ? "non-finite" : "–";
     const pictures = state.thumbs === "pictures" && state.lobe === "total" && state.ev === 0;
     thumb.picture.hidden = !pictures;
     thumb.map.hidden = pictures;
@@ -936,6 +966,14 @@ function drawNow() {
   drawLegend();
   drawValues();
   drawThumbs();
+  drawShadow();
+}
+
+function drawShadow() {
+  const truth = images.get(TRUTH), shadowed = images.get(SHADOWED), key = `${scene.name} ${state.lobe}`;
+  if (!ui.shadow || !truth || !shadowed || ui.shadow.painted === key) return;
+  ui.shadow.painted = key;
+  paintMap(ui.shadow.map, "signed", truth, shadowed, state.lobe, floorOf(), SHADOW_RANGE, true);
 }
 
 function set(changes) {
@@ -951,10 +989,10 @@ function set(changes) {
 // Loads the scene's images, those on the stage first.
 async function loadScene(mine) {
   document.documentElement.removeAttribute("data-ready");
-  const wanted = [...new Set([state.a, state.b, TRUTH, "emission", ...variantsOf(scene).map((v) => v.name)])];
+  const wanted = [...new Set([state.a, state.b, TRUTH, "emission", SHADOWED, ...variantsOf(scene).map((v) => v.name)])];
   let done = 0;
   for (const name of wanted) {
-    const stem = name === TRUTH ? scene.truth.stem : name === "emission" ? (scene.emission ? "emission" : null) : (variantNamed(scene, name) || {}).stem;
+    const stem = name === TRUTH ? scene.truth.stem : name === SHADOWED ? (shadowOf(scene) || {}).stem : name === "emission" ? (scene.emission ? "emission" : null) : (variantNamed(scene, name) || {}).stem;
     if (!stem) continue;
     try {
       const image = await load(scene.folder, stem);
@@ -1024,7 +1062,8 @@ const TERMS = [
   ["Time", "Time of the lighting pass alone as a ratio to the point variant, measured in the same interleaved run."],
   ["Published and default", "name@published is the form its author published; the plain name is the best form we know. Both are shown, so that nobody is judged by our changes or robbed of theirs."],
   ["Emitters", "Lights seen directly are added to the pictures and are part of no metric and no map. Techniques cast no shadows, and neither does the truth they are ranked against."],
-  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is the picture at the scene's exposure. To keep the folder small, values below an eighth of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; every metric was computed from the full floats."],
+  ["Truth, shadowed", "What the lights do past the scene's surfaces, by rays: the unshadowed integrals times the visible share. Lights hide nothing themselves. It stands beside truth as a picture like any other, in no ranking; the missing shadow is its own map."],
+  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is the picture at the scene's exposure. To keep the folder small, values below an eighth of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; every metric was computed from the full floats. Shadowed truth is kept to 0.4 %, a fraction of its own error."],
 ];
 
 function buildGlossary() {

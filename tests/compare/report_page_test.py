@@ -132,7 +132,8 @@ class Page(unittest.TestCase):
                 const done = arguments[0], images = [...document.images];
                 Promise.all(images.map((i) => i.decode().then(() => null, () => i.src)))
                   .then((list) => done([images.length, list.filter(Boolean)]));""")
-            shaded = sum(v["supported"] for v in scene["variants"]) + 1
+            shadow = scene["truth"]["shadow"]
+            shaded = sum(v["supported"] for v in scene["variants"]) + 1 + bool(shadow and shadow["present"])
             self.assertEqual(broken, [shaded, []])
 
     def test_nothing_is_fetched_from_elsewhere(self):
@@ -194,11 +195,36 @@ class Page(unittest.TestCase):
         self.assertEqual([x, y], [24, 28])
         self.assertIn(f"x {x}, y {y}", self.text(".inspector figcaption"))
         rows = self.driver.find_elements(By.CSS_SELECTOR, ".values .row")
-        self.assertEqual(len(rows), 1 + sum(v["supported"] for v in self.results["scenes"][0]["variants"]))
+        self.assertEqual(len(rows), 2 + sum(v["supported"] for v in self.results["scenes"][0]["variants"]))  # two truths
         shown = self.js("return window.arealab.pixel(arguments[0], arguments[1])", x, y)
         luminance = sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), shown["a"]))
         value = float(self.text(".values .row[data-variant=ltc] .num"))
         self.assertAlmostEqual(value, luminance, delta=6e-4 * luminance)
+
+    def test_missing_shadow_is_a_map_of_its_own_and_ranked_nowhere(self):
+        self.open()
+        shadow = self.results["scenes"][0]["truth"]["shadow"]
+        note = self.text("section.shadow .note")
+        self.assertIn(f"Shadows take {100 * shadow['light_lost']:.1f} %", note)
+        self.assertIn("Techniques cast none and are ranked against truth without them", note)
+        self.assertIn("1.02 % on average and 1.98 %", note)
+        # Row 28: lit floor throughout. Free on the left, without light on the right.
+        left, right = self.js("""const c = document.querySelector('section.shadow canvas').getContext('2d');
+            return [2, 46].map((x) => [...c.getImageData(x, 28, 1, 1).data].slice(0, 3));""")
+        for ours, theirs in zip(map_color("signed", 0, 1, True), left):
+            self.assertLessEqual(abs(ours - theirs), 3)
+        for ours, theirs in zip(map_color("signed", 10, 1, True), right):
+            self.assertLessEqual(abs(ours - theirs), 3)
+        self.assertNotIn("shadowed", self.text("table.metrics"))
+        self.assertNotIn("shadowed", self.text("#overview"))
+        self.assertIn("not ranked", next(t.text for t in self.driver.find_elements(By.CSS_SELECTOR, ".thumb") if "shadowed" in t.text))
+        self.js("document.querySelector('section.shadow .link').click()")
+        self.settle()
+        self.assertIn("truth relative to truth, shadowed", self.text("#difference figcaption"))
+        self.open("#scene=warm&b=truth-shadowed")
+        self.assertEqual(self.js("return window.arealab.state.b"), "truth")
+        self.assertIn("No shadow in this scene", self.text("section.shadow .note"))
+        self.assertEqual(self.js("return document.querySelectorAll('section.shadow canvas').length"), 0)
 
     def test_address_keeps_the_state(self):
         self.open("#scene=warm&a=oat&b=hill&lobe=specular&map=magnitude&zoom=2&x=20&y=18&ev=1&wipe=0.25")
@@ -309,7 +335,7 @@ class Page(unittest.TestCase):
             const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
             return c.hidden ? -1 : new Set(Array.from({length: d.length / 4}, (_, i) => d.slice(4 * i, 4 * i + 3).join())).size; })""")
         self.assertEqual(drawn[0], 2)  # truth against itself: no error where lit, the unlit grey elsewhere
-        for colors in drawn[1:4]:  # point, drobot twice: wrong enough to show
+        for colors in drawn[1:5]:  # truth with shadows, point, drobot twice: different enough to show
             self.assertGreater(colors, 3)
 
     def test_missing_data_is_said(self):

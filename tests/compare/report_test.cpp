@@ -60,6 +60,9 @@ const Results& Small() {
     std::vector<SceneResult> scenes = {
         synthetic::MakeScene("gloss", "How does the reflection change?", {}, {48, 36, 6}),
         synthetic::MakeScene("warm", "Does colour survive?", warm, {48, 36, 6})};
+    scenes[0].shadow = synthetic::MakeShadow(*scenes[0].truth);
+    ShadowResult& none = scenes[1].shadow.emplace();
+    none.light_lost = none.bias = none.rel_rmse = 0.0;
     return synthetic::MakeResults(scenes);
   }();
   return results;
@@ -398,9 +401,43 @@ TEST(Report, HostileNamesStayTextAndInsideTheFolder) {
     for (const auto& entry : fs::recursive_directory_iterator(inside))
       files += entry.is_regular_file() ? 1 : 0;
     EXPECT_EQ(folders, 2);
-    EXPECT_EQ(files, 20 * (kind[0] == 'i' ? 2 : 1) +
-                         (kind[0] == 'd' ? 2 : 0));  // truth and nine variants, twice; emission
+    EXPECT_EQ(files, 21 * (kind[0] == 'i' ? 2 : 1) +  // truth and nine variants, twice; one shadowed truth
+                         (kind[0] == 'd' ? 2 : 0));       // emission
   }
+}
+
+// Its steps are coarse, but never where there is no shadow, and never lighter than half a percent off.
+TEST(Report, ShadowedTruthIsKeptWithinHalfAPercent) {
+  const Folder folder;
+  WriteReport(Small(), folder / "report");
+  const SceneResult& scene = Small().scenes[0];
+  const RadianceImage truth = ReadExr(folder / "report/images/gloss/truth.exr"),
+                      stored = ReadExr(folder / "report/images/gloss/truth-shadowed.exr");
+  const RadianceImage& exact = *scene.shadow->image;
+  int whole = 0, partly = 0, black = 0;
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    if (exact.diffuse[i] == scene.truth->diffuse[i]) {
+      EXPECT_EQ(stored.diffuse[i], truth.diffuse[i]);
+      EXPECT_EQ(stored.specular[i], truth.specular[i]);
+      ++whole;
+    } else if (exact.diffuse[i] == glm::vec3(0.0f)) {
+      EXPECT_EQ(stored.diffuse[i], glm::vec3(0.0f));
+      ++black;
+    } else {
+      const float mean = 0.05f;  // below an eighth of truth's mean the files' own steps are coarser
+      EXPECT_NEAR(stored.diffuse[i].x, exact.diffuse[i].x, 0.005f * std::max(exact.diffuse[i].x, mean));
+      ++partly;
+    }
+  }
+  EXPECT_GT(whole, 100);
+  EXPECT_GT(partly, 100);
+  EXPECT_GT(black, 20);
+  EXPECT_FALSE(fs::exists(folder / "report/images/warm/truth-shadowed.exr"));
+  const json shadow = json::parse(ResultsJson(Small()))["scenes"][0]["truth"]["shadow"];
+  EXPECT_EQ(shadow["present"], true);
+  EXPECT_NEAR(shadow["light_lost"].get<double>(), scene.shadow->light_lost, 1e-12);
+  EXPECT_NEAR(shadow["error"]["p99"].get<double>(), 0.0198, 1e-12);
+  EXPECT_EQ(json::parse(ResultsJson(Small()))["scenes"][1]["truth"]["shadow"]["present"], false);
 }
 
 TEST(Report, EqualFileNamesAreToldApart) {
@@ -471,7 +508,8 @@ json Expected(const fs::path& report, const SceneResult& scene) {
   const auto luminance = [](const glm::dvec3& v) { return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z; };
   json expected = json::array();
   for (const auto& [a, b] :
-       {std::pair("ltc", "truth"), std::pair("drobot", "hill"), std::pair("point", "truth")}) {
+       {std::pair("ltc", "truth"), std::pair("drobot", "hill"), std::pair("point", "truth"),
+        std::pair("truth", "truth-shadowed")}) {
     const RadianceImage image_a = ReadExr(report / "images" / scene.name / (std::string(a) + ".exr"));
     const RadianceImage image_b = ReadExr(report / "images" / scene.name / (std::string(b) + ".exr"));
     for (const std::string lobe : {"total", "diffuse", "specular"}) {

@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -110,6 +111,26 @@ inline RadianceImage Shade(const Style& style, const Flaw& flaw, int width, int 
     }
   });
   return image;
+}
+
+// A soft shadow that rises to black towards the right.
+inline ShadowResult MakeShadow(const RadianceImage& truth) {
+  auto image = std::make_shared<RadianceImage>(truth);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double u = static_cast<double>(i % static_cast<std::size_t>(truth.width)) / truth.width;
+    const auto left = static_cast<float>(std::clamp(2.5 - 3.0 * u, 0.0, 1.0));
+    image->diffuse[i] *= left;
+    image->specular[i] *= left;
+  }
+  const ErrorMetrics missing = CompareImages(TotalRadiance(truth), TotalRadiance(*image), truth.width);
+  return {.light_lost = missing.bias / (1.0 + missing.bias),
+          .bias = missing.bias,
+          .rel_rmse = missing.rel_rmse,
+          .mean_error = 0.0102,
+          .p99_error = 0.0198,
+          .seconds = 3.2,
+          .cached = false,
+          .image = image};
 }
 
 struct Size {

@@ -1,0 +1,214 @@
+#include "compare/light_sampling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+namespace arealab {
+namespace {
+
+constexpr double kPi = glm::pi<double>();
+
+std::uint32_t Reverse(std::uint32_t x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0xFF00FF00u) >> 8) | ((x & 0x00FF00FFu) << 8);
+  x = ((x & 0xF0F0F0F0u) >> 4) | ((x & 0x0F0F0F0Fu) << 4);
+  x = ((x & 0xCCCCCCCCu) >> 2) | ((x & 0x33333333u) << 2);
+  return ((x & 0xAAAAAAAAu) >> 1) | ((x & 0x55555555u) << 1);
+}
+
+// Owen's scrambling of a number whose bits are reversed: each bit is turned by a hash of those below it.
+std::uint32_t ScrambleReversed(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;  // constants: [Vegdahl 2021, Owen scrambling based on hashing]
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+// The second coordinate of Sobol's sequence, bits reversed: its matrix is Pascal's triangle modulo 2.
+std::uint32_t SecondReversed(std::uint32_t i) {
+  static const std::array<std::uint32_t, 1024> table = [] {
+    std::array<std::uint32_t, 1024> all{};
+    for (std::uint32_t n = 0; n < all.size(); ++n) {
+      std::uint32_t x = 0;
+      for (std::uint32_t bits = n, v = 1u << 31; bits != 0; bits >>= 1, v ^= v >> 1) {
+        if ((bits & 1u) != 0) x ^= v;
+      }
+      all[n] = Reverse(x);
+    }
+    return all;
+  }();
+  return table[i & 1023u];
+}
+
+double Unit(std::uint32_t x) {
+  return (static_cast<double>(x) + 0.5) * 0x1p-32;
+}
+
+// Below this the corners' angles, each right to 1e-16, would not give the solid angle to 1e-8; and a light so
+// small is as good by area.
+constexpr double kTinySolidAngle = 1e-7;
+
+}  // namespace
+
+std::uint64_t Mix(std::uint64_t a, std::uint64_t b) {
+  std::uint64_t z = a + 0x9e3779b97f4a7c15 * (b + 1);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+  return z ^ (z >> 31);
+}
+
+glm::dvec2 ScrambledSobol(std::uint32_t i, std::uint64_t seed) {
+  return {Unit(Reverse(ScrambleReversed(i, static_cast<std::uint32_t>(seed)))),
+          Unit(Reverse(ScrambleReversed(SecondReversed(i), static_cast<std::uint32_t>(seed >> 32))))};
+}
+
+std::optional<LightDirections> LightDirections::From(const glm::dvec3& position, const glm::dvec3& normal,
+                                                     const Light& light) {
+  LightDirections result;
+  result.shape_ = light.shape;
+  result.center_ = light.center - position;
+  result.half_size_ = light.half_size;
+  const glm::dvec3& center = result.center_;
+  if (light.shape == LightShape::kSphere) {
+    const double distance = glm::length(center), radius = light.half_size.x;
+    if (distance <= radius) return std::nullopt;
+    result.cone_ = SphereCone(center, radius);
+    result.axis_ = {result.cone_.axis_1, result.cone_.axis_2, -result.cone_.axis_3};
+    // The rim that the point sees lies before the centre.
+    result.back_ = distance;
+    if (glm::dot(center, normal) + radius <= 0.0) return std::nullopt;
+    result.solid_angle_ = kPi * result.cone_.sin_1 * result.cone_.sin_2;
+    return result;
+  }
+  result.axis_ = {light.axis_x, light.axis_y, light.normal};
+  result.back_ = -glm::dot(center, light.normal);
+  if (result.back_ < 0.0 && light.two_sided) {
+    result.axis_[1] = -result.axis_[1];
+    result.axis_[2] = -result.axis_[2];
+    result.back_ = -result.back_;
+  }
+  if (!(result.back_ > 0.0)) return std::nullopt;
+  const double x = glm::dot(center, result.axis_[0]), y = glm::dot(center, result.axis_[1]);
+  if (light.shape == LightShape::kDisk) {
+    const double tilt = glm::dot(normal, light.normal),
+                 rise = light.half_size.x * std::sqrt(std::max(1.0 - tilt * tilt, 0.0));
+    if (glm::dot(center, normal) + rise <= 0.0) return std::nullopt;
+    result.cone_ = DiskCone(center, result.axis_[2], light.half_size.x);
+    result.solid_angle_ = kPi * result.cone_.sin_1 * result.cone_.sin_2;
+    return result;
+  }
+  const double top = glm::dot(center, normal) + light.half_size.x * std::abs(glm::dot(light.axis_x, normal)) +
+                     light.half_size.y * std::abs(glm::dot(light.axis_y, normal));
+  if (top <= 0.0) return std::nullopt;
+  result.x0_ = x - light.half_size.x;
+  result.x1_ = x + light.half_size.x;
+  result.y0_ = y - light.half_size.y;
+  result.y1_ = y + light.half_size.y;
+  // The planes through the point and the edges y0, x1, y1, x0 in turn; only what their z axes need.
+  const double z = -result.back_;
+  const auto normal_at = [&](const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::normalize(glm::cross(a, b));
+  };
+  const glm::dvec3 v00(result.x0_, result.y0_, z), v10(result.x1_, result.y0_, z),
+      v11(result.x1_, result.y1_, z), v01(result.x0_, result.y1_, z);
+  const glm::dvec3 n0 = normal_at(v00, v10), n1 = normal_at(v10, v11), n2 = normal_at(v11, v01),
+                   n3 = normal_at(v01, v00);
+  const auto angle = [](const glm::dvec3& a, const glm::dvec3& b) {
+    return std::acos(std::clamp(-glm::dot(a, b), -1.0, 1.0));
+  };
+  const double g2 = angle(n2, n3), g3 = angle(n3, n0);
+  result.k_ = 2.0 * kPi - g2 - g3;
+  result.solid_angle_ = angle(n0, n1) + angle(n1, n2) - result.k_;
+  result.b0_ = n0.z;
+  result.b1_ = n2.z;
+  if (!(result.solid_angle_ > kTinySolidAngle)) {
+    result.by_area_ = true;
+    const double distance2 = glm::dot(center, center);
+    result.solid_angle_ =
+        light.half_size.x * light.half_size.y * 4.0 * result.back_ / (distance2 * std::sqrt(distance2));
+  }
+  return result;
+}
+
+LightDirections::Sample LightDirections::At(const glm::dvec2& u) const {
+  if (shape_ != LightShape::kRectangle) {
+    const double radius = std::sqrt(u.x), phi = 2.0 * kPi * u.y;
+    const double x = cone_.sin_1 * radius * std::cos(phi), y = cone_.sin_2 * radius * std::sin(phi);
+    const double z = std::sqrt(std::max(1.0 - x * x - y * y, 1e-30));
+    const glm::dvec3 direction = cone_.axis_1 * x + cone_.axis_2 * y + cone_.axis_3 * z;
+    const double density = z / (kPi * cone_.sin_1 * cone_.sin_2);
+    if (shape_ == LightShape::kDisk)
+      return {direction, -back_ / std::min(glm::dot(direction, axis_[2]), -1e-30), density};
+    const double along = glm::dot(center_, direction), radius2 = half_size_.x * half_size_.x;
+    const double gap2 = std::max(radius2 - (glm::dot(center_, center_) - along * along), 0.0);
+    return {direction, along - std::sqrt(gap2), density};
+  }
+  double x, y;
+  if (by_area_) {
+    x = x0_ + u.x * (x1_ - x0_);
+    y = y0_ + u.y * (y1_ - y0_);
+  } else {
+    const double angle = u.x * solid_angle_ + k_;
+    const double f = (std::cos(angle) * b0_ - b1_) / std::sin(angle);
+    // The paper's c = ±1/√(f² + b₀²) and x = c·back/√(1 − c²), put together.
+    x = std::clamp(std::copysign(back_ / std::sqrt(std::max(f * f + b0_ * b0_ - 1.0, 1e-30)), f), x0_, x1_);
+    const double d2 = x * x + back_ * back_, d = std::sqrt(d2);
+    const double h0 = y0_ / std::sqrt(d2 + y0_ * y0_), h1 = y1_ / std::sqrt(d2 + y1_ * y1_),
+                 h = h0 + u.y * (h1 - h0);
+    y = std::clamp(h * d / std::sqrt(std::max(1.0 - h * h, 1e-30)), y0_, y1_);
+  }
+  const double distance = std::sqrt(x * x + y * y + back_ * back_);
+  const double density =
+      by_area_ ? distance * distance * distance / (back_ * (x1_ - x0_) * (y1_ - y0_)) : 1.0 / solid_angle_;
+  return {World(glm::dvec3(x, y, -back_)) / distance, distance, density};
+}
+
+std::optional<LightDirections::Sample> LightDirections::Towards(const glm::dvec3& direction) const {
+  if (shape_ != LightShape::kRectangle) {
+    const double x = glm::dot(direction, cone_.axis_1) / cone_.sin_1,
+                 y = glm::dot(direction, cone_.axis_2) / cone_.sin_2, z = glm::dot(direction, cone_.axis_3);
+    if (z <= 0.0 || x * x + y * y >= 1.0) return std::nullopt;
+    const double density = z / (kPi * cone_.sin_1 * cone_.sin_2);
+    if (shape_ == LightShape::kDisk) {
+      const double facing = -glm::dot(direction, axis_[2]);
+      if (facing <= 0.0) return std::nullopt;
+      return Sample{direction, back_ / facing, density};
+    }
+    const double along = glm::dot(center_, direction), radius2 = half_size_.x * half_size_.x;
+    const double gap2 = std::max(radius2 - (glm::dot(center_, center_) - along * along), 0.0);
+    return Sample{direction, along - std::sqrt(gap2), density};
+  }
+  const double facing = -glm::dot(direction, axis_[2]);
+  if (facing <= 0.0) return std::nullopt;
+  const double distance = back_ / facing;
+  const double x = distance * glm::dot(direction, axis_[0]), y = distance * glm::dot(direction, axis_[1]);
+  if (x < x0_ || x > x1_ || y < y0_ || y > y1_) return std::nullopt;
+  return Sample{
+      direction, distance,
+      by_area_ ? distance * distance * distance / (back_ * (x1_ - x0_) * (y1_ - y0_)) : 1.0 / solid_angle_};
+}
+
+std::array<glm::dvec3, 4> LightDirections::Corners() const {
+  const auto corner = [&](double a, double b) {
+    if (shape_ == LightShape::kSphere) {
+      return cone_.axis_3 * cone_.cos_1 + cone_.axis_1 * (a * cone_.sin_1) + cone_.axis_2 * (b * cone_.sin_2);
+    }
+    return center_ + axis_[0] * (a * half_size_.x) + axis_[1] * (b * half_size_.y);
+  };
+  return {corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)};
+}
+
+glm::dvec3 SampleVisibleGgx(const glm::dvec3& to_view, double alpha, const glm::dvec2& u) {
+  const glm::dvec3 stretched = glm::normalize(glm::dvec3(alpha * to_view.x, alpha * to_view.y, to_view.z));
+  const double phi = 2.0 * kPi * u.x, z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
+  const double sine = std::sqrt(std::clamp(1.0 - z * z, 0.0, 1.0));
+  const glm::dvec3 half = glm::dvec3(sine * std::cos(phi), sine * std::sin(phi), z) + stretched;
+  const glm::dvec3 facet = glm::normalize(glm::dvec3(alpha * half.x, alpha * half.y, half.z));
+  return 2.0 * glm::dot(to_view, facet) * facet - to_view;
+}
+
+}  // namespace arealab

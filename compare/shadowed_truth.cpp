@@ -1,0 +1,332 @@
+#include "compare/shadowed_truth.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "compare/light_sampling.h"
+#include "compare/truth_bands.h"
+#include "compare/truth_cache.h"
+#include "scenes/ray_query.h"
+// clang-format off: the order matters
+#include "glsl/dual_begin.h"
+#include "glsl/brdf.glsl"
+#include "glsl/dual_end.h"
+// clang-format on
+
+namespace arealab {
+namespace {
+
+constexpr std::size_t kGroups = 16;
+constexpr std::uint32_t kFirst = 32, kMost = 1024;  // directions of one strategy
+constexpr std::uint64_t kSeed = 0xa4ea1ab;          // of everything; any other gives as good a picture
+constexpr double kLightShare = 0.05;  // of the tolerance: how well the lights are integrated one by one
+constexpr double kFarShare = 1.0 - 0x1p-17;  // rays end before the light: a wall may touch it
+
+enum Integral : std::size_t { kDiffuse, kSpecular, kGrazing, kIntegrals };
+
+// The plane of the light, the four that join it to the point, and the horizon.
+Shaft ShaftTo(const ShadingPoint& point, const LightDirections& light) {
+  Shaft shaft;
+  shaft.apex = point.position;
+  const std::array<glm::dvec3, 4> corners = light.Corners();
+  const glm::dvec3 middle = corners[0] + corners[1] + corners[2] + corners[3];
+  for (std::size_t k = 0; k < 4; ++k) {
+    glm::dvec3 normal = glm::cross(corners[k], corners[(k + 1) % 4]);
+    const double length = glm::length(normal);
+    if (length == 0.0) continue;
+    normal /= glm::dot(normal, middle) < 0.0 ? -length : length;
+    shaft.Add(normal, 0.0);
+  }
+  shaft.Add(light.back_normal(), -light.back_distance());
+  shaft.Add(point.normal, 0.0);
+  return shaft;
+}
+
+// What one light that something may hide gives to one point.
+class SampledLight {
+ public:
+  // Radiance of the diffuse lobe, and of the specular one with F0 and with 1 − F0: all unshadowed.
+  std::array<glm::dvec3, kIntegrals> unshadowed;
+
+  SampledLight(const ShadedPixel& pixel, const Light& light, const LightIntegrals& integrals,
+               const LightDirections& directions, std::uint64_t seed)
+      : unshadowed{pixel.albedo * light.radiance * integrals.form_factor,
+                   pixel.f0 * light.radiance * integrals.specular,
+                   (1.0 - pixel.f0) * light.radiance * integrals.specular_grazing},
+        point_(&pixel.point),
+        directions_(directions),
+        seed_(seed) {
+    for (std::size_t k = 0; k < kIntegrals; ++k) {
+      shares_[k] = unshadowed[k].x + unshadowed[k].y + unshadowed[k].z;
+    }
+    const glm::dvec3 &n = point_->normal, &v = point_->to_view;
+    z_ = n;
+    y_ = glm::cross(n, v);
+    const double sine = glm::length(y_);
+    y_ = sine > 1e-12 ? y_ / sine
+                      : glm::normalize(glm::cross(
+                            n, std::abs(n.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0)));
+    x_ = glm::cross(y_, n);
+    cos_v_ = glm::dot(n, v);
+    view_ = glm::dvec3(sine, 0.0, cos_v_);
+    // Where the light covers more than a quarter of the lobe's middle, 4πα² cosθ sr of the density's peak,
+    // the lobe's own directions serve better; unless the highlight hardly counts here.
+    const double lobe = 4.0 * std::numbers::pi * point_->alpha * point_->alpha * cos_v_;
+    const double specular = shares_[kSpecular] + shares_[kGrazing];
+    by_lobe_ = directions_.solid_angle() > 0.25 * lobe && specular > 0.02 * (specular + shares_[kDiffuse]);
+  }
+
+  std::uint32_t count() const { return count_; }
+  double variance() const { return variance_; }
+
+  // Twice as many directions, or the first ones; rays begin at `origin`.
+  void Refine(const RayQuery& rays, const glm::dvec3& origin) {
+    const std::uint32_t begin = count_, end = count_ == 0 ? kFirst : 2 * count_;
+    static thread_local Scratch scratch;  // keeps its memory
+    scratch.rays.clear();
+    scratch.weighted.clear();
+    const std::uint64_t light_seed = Mix(seed_, 0), lobe_seed = Mix(seed_, 1);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::size_t group = kGroups * (i - begin) / (end - begin);
+      Add(group, directions_.At(ScrambledSobol(i, light_seed)), scratch);
+      if (!by_lobe_) continue;
+      const glm::dvec3 local = SampleVisibleGgx(view_, point_->alpha, ScrambledSobol(i, lobe_seed));
+      const auto sample = directions_.Towards(x_ * local.x + y_ * local.y + z_ * local.z);
+      if (sample) Add(group, *sample, scratch);
+    }
+    count_ = end;
+    scratch.occluded.resize(scratch.rays.size());
+    rays.Occluded(origin, scratch.rays, scratch.occluded);
+    for (std::size_t i = 0; i < scratch.weighted.size(); ++i) {
+      const Weighted& w = scratch.weighted[i];
+      for (std::size_t k = 0; k < kIntegrals; ++k) {
+        weight_[k][w.group] += w.weight[k];
+        if (scratch.occluded[i] == 0) free_[k][w.group] += w.weight[k];
+        square_[k] += w.weight[k] * w.weight[k];
+      }
+    }
+    Estimate();
+  }
+
+  // The share of an integral that arrives.
+  double Visible(Integral k) const { return visible_[k]; }
+  bool AllVisible() const {
+    return std::all_of(visible_.begin(), visible_.end(), [](double v) { return v == 1.0; });
+  }
+
+ private:
+  struct Weighted {
+    std::size_t group;
+    std::array<double, kIntegrals> weight;
+  };
+  struct Scratch {
+    std::vector<RayQuery::ShadowRay> rays;
+    std::vector<Weighted> weighted;
+    std::vector<std::uint8_t> occluded;
+  };
+
+  void Add(std::size_t group, const LightDirections::Sample& sample, Scratch& scratch) const {
+    const double cos_l = glm::dot(z_, sample.direction);
+    if (!(cos_l > 0.0) || !(sample.density > 0.0)) return;
+    glm::dvec3 half = sample.direction + point_->to_view;
+    half /= glm::length(half);
+    const double density_h = dual::GgxDensity(std::min(glm::dot(z_, half), 1.0), point_->alpha);
+    double density = sample.density;
+    if (by_lobe_) density += density_h * dual::SmithG1(cos_v_, point_->alpha) / (4.0 * cos_v_);
+    Weighted w;
+    w.group = group;
+    w.weight[kDiffuse] = cos_l / density;
+    w.weight[kSpecular] = density_h * dual::SmithVisibility(cos_v_, cos_l, point_->alpha) * cos_l / density;
+    w.weight[kGrazing] = w.weight[kSpecular] * dual::SchlickWeight(glm::dot(half, point_->to_view));
+    if (!std::isfinite(w.weight[kDiffuse]) || !std::isfinite(w.weight[kSpecular])) return;
+    scratch.weighted.push_back(w);
+    scratch.rays.push_back({glm::vec3(sample.direction), static_cast<float>(sample.distance * kFarShare)});
+  }
+
+  void Estimate() {
+    std::array<double, kGroups> residual{};
+    double unseen = 0.0;  // what a ray that fell between could change
+    for (std::size_t k = 0; k < kIntegrals; ++k) {
+      double weight = 0.0, free = 0.0;
+      for (std::size_t r = 0; r < kGroups; ++r) {
+        weight += weight_[k][r];
+        free += free_[k][r];
+      }
+      if (weight == 0.0) {  // the lobe lies where no direction fell
+        visible_[k] = k == kDiffuse ? 1.0 : visible_[kDiffuse];
+        unseen += shares_[k];
+        continue;
+      }
+      visible_[k] = free / weight;
+      const double scale = shares_[k] * static_cast<double>(kGroups) / weight;
+      for (std::size_t r = 0; r < kGroups; ++r) {
+        residual[r] += scale * (free_[k][r] - visible_[k] * weight_[k][r]);
+      }
+      const double effective = weight * weight / square_[k];  // as many rays of equal weight
+      unseen += shares_[k] * 0.5 / (effective + 1.0);
+    }
+    double sum = 0.0;
+    for (double r : residual) sum += r * r;
+    variance_ = sum / static_cast<double>(kGroups * (kGroups - 1)) + unseen * unseen;
+  }
+
+  const ShadingPoint* point_;
+  LightDirections directions_;
+  std::uint64_t seed_;
+  glm::dvec3 x_, y_, z_, view_;  // the frame of the lobe, and the viewer in it
+  double cos_v_ = 0.0;
+  bool by_lobe_ = false;
+  std::array<double, kIntegrals> shares_{}, square_{}, visible_{};
+  std::array<std::array<double, kGroups>, kIntegrals> weight_{}, free_{};
+  std::uint32_t count_ = 0;
+  double variance_ = 0.0;
+};
+
+double Sum(const glm::dvec3& v) {
+  return v.x + v.y + v.z;
+}
+
+struct ShadowBands {
+  const Scene& scene;
+  const SurfacePixels& pixels;
+  const RadianceImage& unshadowed;
+  double light_tolerance, tolerance;
+  std::shared_ptr<const RayQuery> rays;
+
+  TruthBand operator()(int row_begin, int row_end) const {
+    const auto width = static_cast<std::size_t>(pixels.width);
+    const std::size_t begin = static_cast<std::size_t>(row_begin) * width,
+                      end = static_cast<std::size_t>(row_end) * width;
+    TruthBand band;
+    const auto part = [&](const std::vector<glm::vec3>& all) {
+      return std::vector<glm::vec3>(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                    all.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    band.diffuse = part(unshadowed.diffuse);
+    band.specular = part(unshadowed.specular);
+    band.relative_error.resize(end - begin, 0.0f);
+    std::vector<SampledLight> lights;
+    for (std::size_t i = begin; i < end; ++i) {
+      Shade(i, lights, band.diffuse[i - begin], band.specular[i - begin], band.relative_error[i - begin]);
+    }
+    return band;
+  }
+
+ private:
+  // Takes the unshadowed radiance of pixel i and leaves the shadowed one.
+  void Shade(std::size_t i, std::vector<SampledLight>& lights, glm::vec3& diffuse, glm::vec3& specular,
+             float& relative_error) const {
+    const double total = Sum(glm::dvec3(diffuse)) + Sum(glm::dvec3(specular));
+    const std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
+    if (!pixel || !(total > 0.0)) return;
+    lights.clear();
+    bool others = false;  // lights that are free
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+      const Light& light = scene.lights[l];
+      const auto directions = LightDirections::From(pixel->point.position, pixel->point.normal, light);
+      if (!directions) continue;
+      if (!rays->MayBlock(ShaftTo(pixel->point, *directions))) {
+        others = true;
+        continue;
+      }
+      const LightIntegrals integrals = IntegrateLight(pixel->point, light, light_tolerance);
+      if (integrals.form_factor == 0.0 && integrals.specular == 0.0) continue;
+      lights.emplace_back(*pixel, light, integrals, *directions, Mix(Mix(kSeed, i), l));
+    }
+    if (lights.empty()) return;
+    const glm::dvec3 origin = rays->Origin(pixel->point.position, glm::dvec3(pixels.view_position));
+    double variance = 0.0;
+    for (SampledLight& light : lights) {
+      light.Refine(*rays, origin);
+      variance += light.variance();
+    }
+    const double goal = tolerance * total * tolerance * total;
+    while (variance > goal) {
+      SampledLight* worst = nullptr;
+      for (SampledLight& light : lights) {
+        if (light.count() < kMost && (worst == nullptr || light.variance() > worst->variance()))
+          worst = &light;
+      }
+      if (worst == nullptr || worst->variance() == 0.0) break;
+      worst->Refine(*rays, origin);
+      variance = 0.0;
+      for (const SampledLight& light : lights) variance += light.variance();
+    }
+    relative_error = static_cast<float>(std::sqrt(variance) / total);
+    if (std::all_of(lights.begin(), lights.end(), [](const SampledLight& l) { return l.AllVisible(); }))
+      return;
+    glm::dvec3 diffuse_left(0.0), specular_left(0.0), diffuse_lost(0.0), specular_lost(0.0);
+    for (const SampledLight& light : lights) {
+      const double d = light.Visible(kDiffuse), s = light.Visible(kSpecular), g = light.Visible(kGrazing);
+      const auto& whole = light.unshadowed;
+      diffuse_left += d * whole[kDiffuse];
+      diffuse_lost += (1.0 - d) * whole[kDiffuse];
+      specular_left += s * whole[kSpecular] + g * whole[kGrazing];
+      specular_lost += (1.0 - s) * whole[kSpecular] + (1.0 - g) * whole[kGrazing];
+    }
+    // What is left of these lights is a lower bound where others are free, all there is where none are.
+    diffuse = glm::vec3(others ? glm::max(glm::dvec3(diffuse) - diffuse_lost, diffuse_left) : diffuse_left);
+    specular =
+        glm::vec3(others ? glm::max(glm::dvec3(specular) - specular_lost, specular_left) : specular_left);
+  }
+};
+
+ShadowedTruth Assemble(const SurfacePixels& pixels, TruthBand whole) {
+  ShadowedTruth truth;
+  std::vector<float> sampled;
+  for (float error : whole.relative_error) {
+    if (error > 0.0f) sampled.push_back(error);
+  }
+  truth.sampled_pixels = static_cast<int>(sampled.size());
+  for (float error : sampled)
+    truth.mean_error += static_cast<double>(error) / static_cast<double>(sampled.size());
+  truth.p99_error = Quantile(std::move(sampled), 0.99);
+  truth.radiance = {pixels.width, pixels.height, std::move(whole.diffuse), std::move(whole.specular)};
+  truth.relative_error = std::move(whole.relative_error);
+  truth.seconds = whole.seconds;
+  return truth;
+}
+
+BandShader MakeShader(const Scene& scene, const SurfacePixels& pixels, const RadianceImage& unshadowed,
+                      const TruthOptions& truth_options, const ShadowOptions& options) {
+  return ShadowBands{scene,
+                     pixels,
+                     unshadowed,
+                     std::max(truth_options.tolerance, kLightShare * options.tolerance),
+                     options.tolerance,
+                     std::make_shared<const RayQuery>(scene)};
+}
+
+}  // namespace
+
+ShadowedTruth ComputeShadowedTruth(const Scene& scene, const SurfacePixels& pixels,
+                                   const RadianceImage& unshadowed, const TruthOptions& truth_options,
+                                   const ShadowOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<TruthBand> bands(
+      static_cast<std::size_t>((pixels.height + kTruthBandRows - 1) / kTruthBandRows));
+  ShadeBands(pixels.height, MakeShader(scene, pixels, unshadowed, truth_options, options), options.progress,
+             bands, std::vector<bool>(bands.size(), true), {});
+  ShadowedTruth truth = Assemble(pixels, JoinBands(std::move(bands)));
+  truth.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return truth;
+}
+
+ShadowedTruth CachedShadowedTruth(const Scene& scene, const SurfacePixels& pixels,
+                                  const RadianceImage& unshadowed, const TruthOptions& truth_options,
+                                  const ShadowOptions& options, const std::filesystem::path& cache_folder) {
+  CachedPicture picture = CachedBands(
+      pixels, ShadowKey(scene, pixels, truth_options, options),
+      [&] { return MakeShader(scene, pixels, unshadowed, truth_options, options); }, options.progress,
+      cache_folder);
+  ShadowedTruth truth = Assemble(pixels, std::move(picture.whole));
+  truth.cached = picture.cached;
+  return truth;
+}
+
+}  // namespace arealab
