@@ -26,7 +26,7 @@ float LambertEdgeRatio(float d, float m, float share, float line2) { return Edge
 
 // Of a side of the light itself, never of one in the horizon: such sides hardly come near π, and the half angle alone keeps its
 // digits. Relative RMSE of the diffuse lobe in float 8e-7 against 7e-7 mirrored, for a quarter fewer cycles an edge; the polynomial's own
-// error is 2.7e-6.
+// error is 4.3e-7.
 float SideEdgeRatio(float d, float m, float share, float line2) { return HalfAngleRatio(d, m, share); }
 
 // θ itself; `area` = |v0 × v1|.
