@@ -1,7 +1,7 @@
 /*---
 summary = "Linearly transformed cosines, horizon by the vector form factor's proxy sphere"
 citation = "Hill & Heitz 2016; Snyder 1996; Heitz et al. 2016"
-author_note = "Published: clipped sphere from a table, rational edge, tables fitted with an L3 norm, Fresnel averaged over the lobe. Ours: clipped sphere by a fit, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
+author_note = "Published: clipped sphere from a table, rational edge, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
@@ -58,8 +58,8 @@ choices = [
 name = "norm"
 summary = "What the stored matrix is divided by"
 choices = [
-  ["middle", "its middle element: four terms, smooth"],
-  ["none", "nothing: five terms", { fit = "l3", frame = "normal" }],
+  ["middle", "its middle element: four terms"],
+  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal" }],
   ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal" }],
 ]
 
