@@ -20,7 +20,7 @@ void CheckReportDirectory(const std::filesystem::path& directory);
 //   images/SCENE/VARIANT.exr layers diffuse and specular (compare/image_files.h); VARIANT "truth" is the
 //   ground truth images/SCENE/VARIANT.png the picture at the scene's exposure, emitters included
 //   data/SCENE/VARIANT.js    what the page loads: the same values as the EXR's
-// VARIANT "truth-shadowed" is the truth with visibility, where a shadow matters; its values are within 0.4 % of
+// VARIANT "truth-shadowed" is the truth with visibility, where a shadow matters; its values are within 0.8 % of
 // the computed ones, a fraction of their own error.
 // Names are the scene's and the variant's, with '_' for what a file name should not hold.
 // `progress` gets the fraction done, from one thread at a time. Throws InputError where the folder cannot be

@@ -22,7 +22,7 @@ namespace arealab {
 namespace {
 
 constexpr std::size_t kGroups = 16;
-constexpr std::uint32_t kFirst = 32, kMost = 1024;  // directions of one strategy
+constexpr std::uint32_t kFirst = 32, kMost = 512;  // directions of one strategy
 constexpr std::uint64_t kSeed = 0xa4ea1ab;          // of everything; any other gives as good a picture
 constexpr double kLightShare = 0.05;  // of the tolerance: how well the lights are integrated one by one
 constexpr double kFarShare = 1.0 - 0x1p-17;  // rays end before the light: a wall may touch it

@@ -31,7 +31,7 @@ struct ShadowedTruth {
 //   light's solid angle and, where the lobe is narrow against the light, of the lobe's visible facets
 //   (balance heuristic). The standard error is that of sixteen groups, each a net by itself; together they
 //   are a finer net than sixteen at random, so that it is rather too large. The light that adds most to it is
-//   sampled twice as densely until the tolerance is met, from 32 directions of a kind up to 1024.
+//   sampled twice as densely until the tolerance is met, from 32 directions of a kind up to 512.
 // If all rays of a light agree (all free, all blocked) the integral is taken whole or not at all, and half a
 // ray's share is stated as its error. Same bits on any number of threads: the seeds are the pixel's and the
 // light's numbers. `unshadowed` is ComputeTruth's of the same scene and pixels with truth_options.

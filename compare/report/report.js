@@ -1063,7 +1063,7 @@ const TERMS = [
   ["Published and default", "name@published is the form its author published; the plain name is the best form we know. Both are shown, so that nobody is judged by our changes or robbed of theirs."],
   ["Emitters", "Lights seen directly are added to the pictures and are part of no metric and no map. Techniques cast no shadows, and neither does the truth they are ranked against."],
   ["Truth, shadowed", "What the lights do past the scene's surfaces, by rays: the unshadowed integrals times the visible share. Lights hide nothing themselves. It stands beside truth as a picture like any other, in no ranking; the missing shadow is its own map."],
-  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is the picture at the scene's exposure. To keep the folder small, values below an eighth of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; every metric was computed from the full floats. Shadowed truth is kept to 0.4 %, a fraction of its own error."],
+  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is the picture at the scene's exposure. To keep the folder small, values below an eighth of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; every metric was computed from the full floats. Shadowed truth is kept to 0.8 %, less than its own error."],
 ];
 
 function buildGlossary() {
