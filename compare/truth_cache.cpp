@@ -24,7 +24,7 @@ namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
 constexpr std::uint64_t kVersion = 4;
-constexpr std::uint64_t kShadowVersion = 1;  // of the visibility on top of it
+constexpr std::uint64_t kShadowVersion = 2;  // of the visibility on top of it
 constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
 
 // FNV-1a over 64-bit words, in two lanes that start apart and turn differently; not against malice.
