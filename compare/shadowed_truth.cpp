@@ -15,6 +15,7 @@
 // clang-format off: the order matters
 #include "glsl/dual_begin.h"
 #include "glsl/brdf.glsl"
+#include "glsl/brdf_choices.h"
 #include "glsl/dual_end.h"
 // clang-format on
 
@@ -141,7 +142,10 @@ class SampledLight {
     Weighted w;
     w.group = group;
     w.weight[kDiffuse] = cos_l / density;
-    w.weight[kSpecular] = density_h * dual::SmithVisibility(cos_v_, cos_l, point_->alpha) * cos_l / density;
+    const double cos_h = glm::dot(z_, half), tan2_h = std::max(1.0 / (cos_h * cos_h) - 1.0, 0.0);
+    w.weight[kSpecular] = density_h * cos_l / density *
+                          dual::BrdfOverGgx(point_->brdf, cos_v_, cos_l, glm::dot(half, point_->to_view), tan2_h,
+                                            point_->alpha);
     w.weight[kGrazing] = w.weight[kSpecular] * dual::SchlickWeight(glm::dot(half, point_->to_view));
     if (!std::isfinite(w.weight[kDiffuse]) || !std::isfinite(w.weight[kSpecular])) return;
     scratch.weighted.push_back(w);
@@ -222,8 +226,9 @@ struct ShadowBands {
   void Shade(std::size_t i, std::vector<SampledLight>& lights, glm::vec3& diffuse, glm::vec3& specular,
              float& relative_error) const {
     const double total = Sum(glm::dvec3(diffuse)) + Sum(glm::dvec3(specular));
-    const std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
+    std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
     if (!pixel || !(total > 0.0)) return;
+    pixel->point.brdf = scene.brdf;
     lights.clear();
     bool others = false;  // lights that are free
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {

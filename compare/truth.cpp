@@ -48,8 +48,9 @@ TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_beg
   band.specular.resize(end - begin, glm::vec3(0.0f));
   band.relative_error.resize(end - begin, 0.0f);
   for (std::size_t i = begin; i < end; ++i) {
-    const std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
+    std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
     if (!pixel) continue;
+    pixel->point.brdf = scene.brdf;
     const glm::dvec3 &albedo = pixel->albedo, &f0 = pixel->f0;
     glm::dvec3 diffuse(0.0), specular(0.0), error(0.0);
     for (const Light& light : scene.lights) {

@@ -13,7 +13,7 @@ namespace arealab {
 // What one light does to one shaded point, for white albedo and unit radiance.
 struct LightIntegrals {
   double form_factor = 0.0;  // ∫ cosθ_i / π dω over the visible light
-  double specular = 0.0;     // ∫ D G2 / (4 cosθ_o) dω: the lobe with Fresnel 1
+  double specular = 0.0;     // ∫ f cosθ_i dω with Fresnel 1; of ggx ∫ D G2 / (4 cosθ_o) dω
   double specular_grazing =
       0.0;  // the same weighted by (1 − h·v)^5: radiance = F0·(specular − grazing) + grazing
   double form_factor_error = 0.0;  // absolute, estimated, each at least its rounding error
@@ -25,7 +25,8 @@ struct ShadingPoint {
   glm::dvec3 position;  // m, world
   glm::dvec3 normal;    // unit
   glm::dvec3 to_view;   // unit
-  double alpha;         // GGX, roughness²
+  double alpha;         // roughness²
+  Brdf brdf = Brdf::kGgx;
 };
 
 // Throws nothing; a point turned away from the viewer, or a light wholly below the horizon or facing away,

@@ -155,6 +155,7 @@ void AddTruth(Hash& hash, const Scene& scene, const SurfacePixels& pixels, const
   hash.Value(pixels.width);
   hash.Value(pixels.height);
   hash.Vector(glm::dvec3(pixels.view_position));
+  if (scene.brdf != Brdf::kGgx) hash.Value(scene.brdf);  // left out, the default's truths keep their names
   for (const Light& light : scene.lights) {
     hash.Value(light.shape);
     hash.Value(light.two_sided);

@@ -69,8 +69,8 @@ std::optional<std::string_view> AfterDirective(std::string_view line, std::strin
 
 class Expander {
  public:
-  Expander(const ShaderLibrary& library, const Variant& variant, Precision precision)
-      : library_(library), variant_(variant), precision_(precision) {}
+  Expander(const ShaderLibrary& library, const Variant& variant, Precision precision, Brdf brdf)
+      : library_(library), variant_(variant), precision_(precision), brdf_(brdf) {}
 
   ExpandedSource Run(const std::string& main, const std::vector<std::pair<std::string, int>>& effects) {
     EmitPrologue(effects);
@@ -123,6 +123,7 @@ class Expander {
     if (name == "platform") {
       return precision_ == Precision::kDouble ? "platform_double.glsl" : "platform_float.glsl";
     }
+    if (name == "brdf") return fmt::format("brdf/{}.glsl", Name(brdf_));
     if (!variant_.technique) return name;
     if (name == "technique") return fmt::format("techniques/{}.glsl", variant_.technique->name);
     const auto option = variant_.options.find(name);
@@ -131,7 +132,7 @@ class Expander {
 
   [[noreturn]] void FailUnknown(const std::string& name, const std::string& resolved,
                                 const std::string& where) const {
-    std::vector<std::string> special{"\"platform\""};
+    std::vector<std::string> special{"\"platform\"", "\"brdf\""};
     if (variant_.technique) {
       special.emplace_back("\"technique\"");
       for (const Option& option : variant_.technique->options)
@@ -199,6 +200,7 @@ class Expander {
   const ShaderLibrary& library_;
   const Variant& variant_;
   Precision precision_;
+  Brdf brdf_;
   ExpandedSource out_;
   std::set<std::string> included_;
   std::vector<std::string> open_;  // from the main file to the one being read
@@ -270,8 +272,9 @@ std::string ExpandedSource::RewriteLog(const std::string& log) const {
 }
 
 ExpandedSource Expand(const ShaderLibrary& library, const std::string& main, const Variant& variant,
-                      const std::vector<std::pair<std::string, int>>& effects, Precision precision) {
-  return Expander(library, variant, precision).Run(main, effects);
+                      const std::vector<std::pair<std::string, int>>& effects, Precision precision,
+                      Brdf brdf) {
+  return Expander(library, variant, precision, brdf).Run(main, effects);
 }
 
 }  // namespace arealab

@@ -113,11 +113,24 @@ float CosineFromSlope(LobeView view, float slope_x, float slope2) {
   return 2.0 * (view.sin_v * slope_x + view.cos_v) / (1.0 + slope2) - view.cos_v;
 }
 
-// What multiplies P22: with Fresnel 1, and with Schlick's weight.
-vec2 LobeWeights(LobeView view, float slope_x, float slope2) {
-  float v = view.sin_v * slope_x + view.cos_v;  // (v·h) √(1 + |s|²)
+// The light direction whose half vector has the slope s.
+struct SlopeLight {
+  float n_dot_l;
+  float v_dot_h;
+  float stretch;  // (v·h) √(1 + |s|²)
+};
+
+SlopeLight LightAtSlope(LobeView view, float slope_x, float slope2) {
+  SlopeLight light;
   float inv = 1.0 / (1.0 + slope2);
-  float n_dot_l = max(2.0 * v * inv - view.cos_v, 0.0);
-  float lobe = 4.0 * v * SmithVisibility(view.cos_v, n_dot_l, view.alpha) * n_dot_l;
-  return vec2(lobe, lobe * SchlickWeight(v * sqrt(inv)));
+  light.stretch = view.sin_v * slope_x + view.cos_v;
+  light.n_dot_l = max(2.0 * light.stretch * inv - view.cos_v, 0.0);
+  light.v_dot_h = light.stretch * sqrt(inv);
+  return light;
+}
+
+// What multiplies P22 of GGX: with Fresnel 1, and with Schlick's weight. brdf_over_ggx: the scene's BRDF there, see brdf.glsl.
+vec2 LobeWeights(SlopeLight light, float brdf_over_ggx) {
+  float lobe = 4.0 * light.stretch * brdf_over_ggx * light.n_dot_l;
+  return vec2(lobe, lobe * SchlickWeight(light.v_dot_h));
 }

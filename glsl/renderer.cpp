@@ -87,7 +87,9 @@ void Renderer::Impl::Allocate(glm::ivec2 new_size) {
 
 GLuint Renderer::Impl::LoadTable(const Variant& variant, const arealab::Table& table) {
   std::string file = table.file;
-  for (const auto& [option, choice] : variant.options) {
+  std::map<std::string, std::string> chosen = variant.options;
+  chosen["brdf"] = Name(scene.brdf);
+  for (const auto& [option, choice] : chosen) {
     const std::string placeholder = "{" + option + "}";
     for (auto at = file.find(placeholder); at != std::string::npos; at = file.find(placeholder)) {
       file.replace(at, placeholder.size(), choice);
@@ -114,7 +116,7 @@ Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision 
   if (const std::optional<std::string> why = WhyUnsupported(variant, scene)) {
     throw InputError(fmt::format("{}; expected a variant that supports the scene", *why));
   }
-  const ExpandedSource source = Expand(library, "lighting.frag", variant, effects, precision);
+  const ExpandedSource source = Expand(library, "lighting.frag", variant, effects, precision, scene.brdf);
   std::unique_ptr<Program>& program = programs[source.text];
   if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
   Pass pass{program.get(), {}};
@@ -203,6 +205,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size) {
   impl_->Allocate(size);
   impl_->light_count = static_cast<int>(lights.size());
   impl_->scene.name = scene.name;
+  impl_->scene.brdf = scene.brdf;
   impl_->scene.lights = scene.lights;
   impl_->scene.materials = scene.materials;
   impl_->effects = SceneEffects(scene);

@@ -27,13 +27,18 @@ constexpr int kHeaderOffset = 1;
 
 constexpr std::array kShapes{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere};
 const std::vector<std::string> kLobes{"diffuse", "specular"};
-const std::vector<std::string> kBrdfs{"ggx"};
+// "ggx" and the other choices of a scene.
+std::vector<std::string> BrdfNames() {
+  std::vector<std::string> names;
+  for (const Brdf brdf : kBrdfs) names.emplace_back(Name(brdf));
+  return names;
+}
 // What a technique may claim to be exact in: the claims that a test can check against the truth.
 const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle",
                                        "ggx_disk",          "ggx_sphere",   "point_limit"};
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
-                                                "technique", "platform", "techniques", "tables", "published"};
+                                                "technique", "platform", "techniques", "tables", "published", "brdf"};
 
 std::string Upper(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -238,7 +243,7 @@ class HeaderReader {
     const std::vector<std::string> lobes = NeededList(root, "lobes", kLobes);
     technique.diffuse = std::find(lobes.begin(), lobes.end(), "diffuse") != lobes.end();
     technique.specular = std::find(lobes.begin(), lobes.end(), "specular") != lobes.end();
-    technique.brdfs = NeededList(root, "brdfs", kBrdfs);
+    technique.brdfs = NeededList(root, "brdfs", BrdfNames());
     technique.effects = NameList(root, "effects", KnownEffects());
     technique.exact = NameList(root, "exact", kClaims);
   }
@@ -288,7 +293,7 @@ class HeaderReader {
   }
 
   // ["arc", "branchless with the closing arc"], of an option that has its choices so far. A third element
-  // names what the choice needs of other options: { fit = "polygon" }.
+  // names what the choice needs of other options, and of the scene's BRDF: { fit = "polygon", brdf = "ggx" }.
   Choice ReadChoice(const toml::node& node, const Option& option) const {
     const toml::array* pair = node.as_array();
     if (!pair || pair->size() < 2 || pair->size() > 3 || (pair->size() == 3 && !(*pair)[2].is_table())) {
@@ -323,6 +328,10 @@ class HeaderReader {
         const bool is_default = &choice == &technique.options[i].choices.front();
         for (const auto& [name, needed] : choice.needs) {
           const int line = LineOf(*tables[i]->get("choices"));
+          if (name == "brdf") {
+            CheckNeededBrdf(technique, choice, needed, line);
+            continue;
+          }
           const Option& other = FindOption(technique, name, line);
           std::vector<std::string> names;
           for (const Choice& known : other.choices) names.push_back(known.name);
@@ -336,6 +345,14 @@ class HeaderReader {
           }
         }
       }
+    }
+  }
+
+  void CheckNeededBrdf(const Technique& technique, const Choice& choice, const std::string& needed,
+                       int line) const {
+    if (std::find(technique.brdfs.begin(), technique.brdfs.end(), needed) == technique.brdfs.end()) {
+      Fail(line, fmt::format("choice \"{}\" needs unknown brdf \"{}\"", choice.name, needed),
+           ExpectedNames(needed, technique.brdfs));
     }
   }
 
@@ -407,7 +424,7 @@ class HeaderReader {
     }
   }
 
-  // Every "{…}" in a table's file name is an option.
+  // Every "{…}" in a table's file name is an option, or the scene's BRDF.
   void CheckPlaceholders(std::string_view file, const Technique& technique, int line) const {
     if (file.empty() || file.find('/') != std::string_view::npos) {
       Fail(line, fmt::format("\"{}\" is no file in glsl/tables/", file),
@@ -416,7 +433,8 @@ class HeaderReader {
     for (auto open = file.find('{'); open != std::string_view::npos; open = file.find('{', open + 1)) {
       const auto close = file.find('}', open);
       if (close == std::string_view::npos) Fail(line, fmt::format("\"{}\" lacks a }}", file), "{option}");
-      FindOption(technique, file.substr(open + 1, close - open - 1), line);
+      const std::string_view name = file.substr(open + 1, close - open - 1);
+      if (name != "brdf") FindOption(technique, name, line);
     }
   }
 

@@ -14,7 +14,8 @@ namespace arealab {
 struct Choice {
   std::string name;                               // "arc"
   std::string summary;                            // one line
-  std::map<std::string, std::string> needs = {};  // other options and the choices of theirs that it goes with
+  // Other options and the choices of theirs that it goes with; under "brdf" the one BRDF of a scene that it does.
+  std::map<std::string, std::string> needs = {};
 };
 
 // A compile-time choice. Where the folder glsl/NAME/ exists, each choice is a file in it and `#include
@@ -34,7 +35,7 @@ struct Knob {
 
 // A texture that the technique samples: `uniform sampler2D table_NAME`, loaded from glsl/tables/FILE, in
 // which
-// "{option}" stands for that option's choice.
+// "{option}" stands for that option's choice and "{brdf}" for the scene's BRDF.
 struct Table {
   std::string name;
   std::string file;

@@ -1,6 +1,7 @@
 #include "glsl/variant.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -200,6 +201,7 @@ std::optional<std::string> WhyInconsistent(const Variant& variant) {
   for (const Option& option : variant.technique->options) {
     const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
     for (const auto& [other, needed] : choice->needs) {
+      if (other == "brdf") continue;  // a scene's matter
       if (const std::string& chosen = variant.options.at(other); chosen != needed) {
         return fmt::format("{}={} does not go with {}={}; expected +{}={}", option.name, choice->name, other,
                            chosen, other, needed);
@@ -210,6 +212,20 @@ std::optional<std::string> WhyInconsistent(const Variant& variant) {
 }
 
 std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene) {
+  const std::string brdf = Name(scene.brdf);
+  const std::vector<std::string>& brdfs = variant.technique->brdfs;
+  if (std::find(brdfs.begin(), brdfs.end(), brdf) == brdfs.end()) {
+    return fmt::format("{} does not know the BRDF {}, which is the scene's; it knows {}", variant.technique->name, brdf,
+                       fmt::join(brdfs, ", "));
+  }
+  for (const Option& option : variant.technique->options) {
+    const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
+    const auto needed = choice->needs.find("brdf");
+    if (needed != choice->needs.end() && needed->second != brdf) {
+      return fmt::format("{} with {}={} goes with the BRDF {} alone; the scene's is {}", variant.technique->name,
+                         option.name, choice->name, needed->second, brdf);
+    }
+  }
   const std::vector<LightShape>& shapes = variant.technique->shapes;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];

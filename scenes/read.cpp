@@ -266,11 +266,15 @@ class SceneReader {
                  fmt::format("{}; expected valid TOML", error.description()));
     }
     const Fields root(file_, root_table, "the scene");
-    root.Allow({"units", "exposure", "camera", "material", "surface", "light"});
+    root.Allow({"units", "exposure", "brdf", "camera", "material", "surface", "light"});
     scene_.units = root.Word("units", {"radiometric", "photometric"}, "radiometric") == "photometric"
                        ? Units::kPhotometric
                        : Units::kRadiometric;
     scene_.exposure = root.Number("exposure", kExposure, 0.0);
+    std::vector<std::string> brdfs;
+    for (const Brdf brdf : kBrdfs) brdfs.emplace_back(Name(brdf));
+    const std::string brdf = root.Word("brdf", brdfs, Name(Brdf::kGgx));
+    scene_.brdf = kBrdfs[std::find(brdfs.begin(), brdfs.end(), brdf) - brdfs.begin()];
     ReadCamera(root);
     for (const Fields& fields : Tables(root, "material")) ReadMaterial(fields);
     const std::vector<Fields> surfaces = Tables(root, "surface");

@@ -43,6 +43,24 @@ const char* Name(LightShape shape) {
   return "";
 }
 
+const char* Name(Brdf brdf) {
+  switch (brdf) {
+    case Brdf::kGgx:
+      return "ggx";
+    case Brdf::kGgxSeparable:
+      return "ggx_separable";
+    case Brdf::kBeckmann:
+      return "beckmann";
+    case Brdf::kBlinnPhong:
+      return "blinn_phong";
+    case Brdf::kWard:
+      return "ward";
+    case Brdf::kPhong:
+      return "phong";
+  }
+  return "";
+}
+
 double Luminance(const glm::dvec3& color) {
   return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));  // [ITU-R BT.709-6, item 3.2]
 }

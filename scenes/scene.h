@@ -18,6 +18,14 @@ enum class LightShape { kRectangle, kDisk, kSphere };
 // "rectangle", "disk", "sphere": as written in scene files, technique headers and results.
 const char* Name(LightShape shape);
 
+// The specular BRDF of a scene's surfaces, for Fresnel 1; its formulas and sources: glsl/brdf/.
+enum class Brdf { kGgx, kGgxSeparable, kBeckmann, kBlinnPhong, kWard, kPhong };
+constexpr Brdf kBrdfs[] = {Brdf::kGgx,        Brdf::kGgxSeparable, Brdf::kBeckmann,
+                           Brdf::kBlinnPhong, Brdf::kWard,         Brdf::kPhong};
+
+// "ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong": as in scene files, technique headers and file names.
+const char* Name(Brdf brdf);
+
 // Relative luminance of linear sRGB: a quantity in W per channel keeps its unit, Rec. 709 weights.
 double Luminance(const glm::dvec3& color);
 
@@ -83,6 +91,7 @@ struct Scene {
   std::string question;  // the file's first line, without the comment mark: what this scene asks
   std::filesystem::path file;
   Units units = Units::kRadiometric;
+  Brdf brdf = Brdf::kGgx;
   double exposure = 0.0;  // EV: pictures show radiance × 2^exposure
   Camera camera;
   std::vector<Material> materials;

@@ -4,7 +4,7 @@ citation = "Light field 2013; Arvo 1994; Lambert 1760"
 author_note = "Published: the vector normalised, which the text says is what its listing does: form factor and fall-off are lost, a light is as bright from afar as from near; the language's arc cosine, Sutherland-Hodgman clipping. Default: Arvo's vector irradiance as it stands, exact for Lambert. In both, the test for lights wholly above or below comes first, and the specular is the BRDF towards the vector times its irradiance: a highlight of a point, brighter without bound as roughness falls, never the light's own outline. The listing's slips (two names for one polygon, a fixed count of corners, the same test twice) are corrected"
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
 exact = ["lambert_rectangle", "point_limit"]
 

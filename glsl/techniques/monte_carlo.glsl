@@ -1,10 +1,10 @@
 /*---
 summary = "Samples of the light's solid angle and of the lobe, combined: unbiased, noisy"
 citation = "Veach & Guibas 1995; Heitz 2018; Ureña et al. 2013; Burley 2020"
-author_note = "Nobody's published form: what a user would otherwise do. Half of the samples on the light (rectangle: even in solid angle, by area below 0.01 sr; disk: by area; sphere: even over its cone), half along the mirrored visible normals of GGX, weighed by the balance heuristic; a lone sample is of either kind by chance. Owen-scrambled Sobol points, another scrambling for every pixel, light and seed, none for the time"
+author_note = "Nobody's published form: what a user would otherwise do. Half of the samples on the light (rectangle: even in solid angle, by area below 0.01 sr; disk: by area; sphere: even over its cone), half along the mirrored visible normals of GGX (of the same alpha whatever the scene's BRDF: unbiased still), weighed by the balance heuristic; a lone sample is of either kind by chance. Owen-scrambled Sobol points, another scrambling for every pixel, light and seed, none for the time"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
 
 [[option]]

@@ -4,12 +4,13 @@ citation = "far-field limit of an area light; intensity and its cosine as in Dro
 author_note = "published and default form are the same: there is one"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
 exact = ["point_limit"]
 ---*/
 #include "surface.glsl"
 #include "brdf.glsl"
+#include "brdf"
 
 // m²: below it no float position tells the centre from the point; there the direction is 0 and so is the radiance.
 const float kMinDistance2 = 1e-20;
@@ -36,7 +37,8 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #else
   vec3 fresnel = surface.f0;
 #endif
-  float brdf = GgxDensity(n_dot_h, surface.alpha) * SmithVisibility(n_dot_v, n_dot_l, surface.alpha);
+  float tan2_h = (1.0 - n_dot_h) * (1.0 + n_dot_h) / (n_dot_h * n_dot_h);
+  float brdf = GgxDensity(n_dot_h, surface.alpha) * BrdfOverGgx(n_dot_v, n_dot_l, dot(to_view, halfway), tan2_h, surface.alpha);
   radiance.specular = fresnel * brdf * irradiance;
   return radiance;
 }

@@ -4,7 +4,7 @@ citation = "Lambert 1760; Walter et al. 2007; Heitz 2014"
 author_note = "Ours: the rule of the ground truth at a fixed number of nodes"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
 exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle", "ggx_disk", "ggx_sphere", "point_limit"]
 
@@ -18,6 +18,7 @@ choices = [
 ---*/
 #include "gauss_nodes.glsl"
 #include "outline.glsl"
+#include "brdf"
 
 // Half the nodes do where a ray's y or a panel's range of it is shorter: Gauss's error falls with the stretch's 2N-th power.
 const float kShortReach = 0.15;
@@ -98,7 +99,8 @@ vec2 RayIntegral(LobeView view, vec2 center, vec2 direction, float origin, float
     float r = origin + size * p;
     float slope2 = max(center2 + r * (2.0 * along + r), 0.0);
     float tail = alpha2 + slope2;
-    sum += LobeWeights(view, center.x + r * direction.x, slope2) * (kRayNodes[i].y * derivative * (r / tail) / tail);
+    SlopeLight light = LightAtSlope(view, center.x + r * direction.x, slope2);
+    sum += LobeWeights(light, BrdfOverGgx(view.cos_v, light.n_dot_l, light.v_dot_h, slope2, view.alpha)) * (kRayNodes[i].y * derivative * (r / tail) / tail);
   }
   return sum * (reach * size);
 }

@@ -106,7 +106,8 @@ TEST(PolarRule, LobeIsTheBrdfInSlopes) {
       double expected = dual::GgxDensity(h.z, alpha) * dual::SmithVisibility(cos_v, l.z, alpha) * l.z * 4.0 *
                         v_dot_h * std::pow(h.z, 3);
       double tail = alpha * alpha + slope2, p22 = alpha * alpha / (kPi * tail * tail);
-      dual::vec2 lobe = dual::LobeWeights(view, slope_x, slope2);
+      dual::vec2 lobe = dual::LobeWeights(dual::LightAtSlope(view, slope_x, slope2),
+                                          dual::SmithVisibility(cos_v, l.z, alpha));
       EXPECT_NEAR(lobe.x * p22, expected, 1e-12 * expected);
       EXPECT_NEAR(lobe.y / lobe.x, std::pow(1.0 - v_dot_h, 5), 1e-12);
     }

@@ -6,6 +6,8 @@
 
 #define EFFECT_FRESNEL 1
 #include "glsl/dual_begin.h"
+#include "glsl/brdf.glsl"
+#include "glsl/brdf/ggx.glsl"
 #include "glsl/importance_cone.glsl"
 #include "glsl/representative_point.glsl"
 #include "glsl/specular_albedo.glsl"

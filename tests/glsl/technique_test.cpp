@@ -255,7 +255,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongHeader{"\"sphere\"", "3", "5: shapes is not a string"},  //
         WrongHeader{"[\"diffuse\"]", "[\"matte\"]",
                     "6: unknown name \"matte\" in lobes; expected diffuse, specular"},
-        WrongHeader{"[\"ggx\"]", "[\"phong\"]", "7: unknown name \"phong\" in brdfs; expected ggx"},
+        WrongHeader{"[\"ggx\"]", "[\"lambert\"]",
+                    "7: unknown name \"lambert\" in brdfs; expected ggx, ggx_separable, beckmann, blinn_phong, ward, phong"},
+        WrongHeader{"[\"down\", \"downwards\"]", "[\"down\", \"downwards\", { brdf = \"ward\" }]",
+                    "14: choice \"down\" needs unknown brdf \"ward\"; expected ggx"},
         WrongHeader{"[\"two_sided\"]", "[\"shiny\"]",
                     "8: unknown name \"shiny\" in effects; expected rectangle"},
         WrongHeader{"[\"lambert_sphere\"]", "[\"all\"]",

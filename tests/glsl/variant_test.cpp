@@ -36,6 +36,7 @@ const std::vector<Technique>& Techniques() {
     same.shapes = {LightShape::kDisk, LightShape::kSphere};
     same.options = {MakeOption("way", {"up", "down"})};
     same.published = {{"way", "up"}};
+    for (Technique* technique : {&ltc, &plain, &same}) technique->brdfs = {"ggx"};
     return std::vector<Technique>{ltc, plain, same};
   }();
   return techniques;
@@ -177,6 +178,25 @@ TEST(Variant, UnsupportedEffectsAreNamedInASentence) {
   EXPECT_EQ(WhyUnsupported(Parse("ltc"), scene), std::nullopt);
   EXPECT_EQ(WhyUnsupported(Parse("plain"), scene),
             "plain does not take a Fresnel term; the scene's materials reflect less than all light");
+}
+
+TEST(Variant, UnsupportedBrdfsAreNamedInASentence) {
+  Scene scene = SceneWith(LightShape::kRectangle, "lamp");
+  scene.brdf = Brdf::kWard;
+  EXPECT_EQ(WhyUnsupported(Parse("ltc"), scene),
+            "ltc does not know the BRDF ward, which is the scene's; it knows ggx");
+  std::vector<Technique> techniques = Techniques();
+  techniques[0].brdfs = {"ggx", "ward"};
+  techniques[0].options[0].choices[1].needs = {{"brdf", "ggx"}};
+  Variant variant = DefaultVariant(techniques[0]);
+  EXPECT_EQ(WhyUnsupported(variant, scene), std::nullopt);
+  const Option& option = techniques[0].options[0];
+  variant.options[option.name] = option.choices[1].name;
+  EXPECT_EQ(WhyInconsistent(variant), std::nullopt);  // it is the scene's matter
+  EXPECT_EQ(WhyUnsupported(variant, scene), "ltc with " + option.name + "=" + option.choices[1].name +
+                                                " goes with the BRDF ggx alone; the scene's is ward");
+  scene.brdf = Brdf::kGgx;
+  EXPECT_EQ(WhyUnsupported(variant, scene), std::nullopt);
 }
 
 }  // namespace

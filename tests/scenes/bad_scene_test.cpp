@@ -57,6 +57,8 @@ std::vector<BadScene> BadScenes() {
       {"EmptyFile", "#HERE\n", "the scene has no camera; expected a table [camera] with position and target"},
       {"UnknownKeyAtTop", "exposur = 1.0 #HERE\n" + kCamera + kMaterial + kSurface + kLight,
        "unknown key 'exposur' in the scene; expected 'exposure'"},
+      {"UnknownBrdf", "brdf = \"beckman\" #HERE\n" + kCamera + kMaterial + kSurface + kLight,
+       "'brdf' in the scene is 'beckman'; expected 'beckmann'"},
       {"UnknownUnits", "units = \"photometrc\" #HERE\n" + kCamera + kMaterial + kSurface + kLight,
        "'units' in the scene is 'photometrc'; expected 'photometric'"},
       {"ExposureIsText", "exposure = \"bright\" #HERE\n" + kCamera + kMaterial + kSurface + kLight,
@@ -329,7 +331,7 @@ std::vector<BadScene> BadScenes() {
        "'flux' is a radiometric quantity and this scene's units are photometric; expected 'luminance' or "
        "'luminous_flux'"},
       {"NewlineInKey", "\"a\\nb\" = 1 #HERE\n" + kCamera,
-       "unknown key 'a b' in the scene; expected one of: units, exposure, camera, material, surface, light"},
+       "unknown key 'a b' in the scene; expected one of: units, exposure, brdf, camera, material, surface, light"},
       {"PackageFileMissing",
        Surface("type = \"mesh\"\nfile = \"glmark2-data:models/teapot.obj\" #HERE\nmaterial = \"grey\"\n"),
        "no file 'models/teapot.obj'; expected a file in the Debian package glmark2-data"},
