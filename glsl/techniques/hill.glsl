@@ -1,10 +1,10 @@
 /*---
 summary = "Linearly transformed cosines, horizon by the vector form factor's proxy sphere"
-citation = "Hill & Heitz 2016; Snyder 1996; Heitz et al. 2016"
-author_note = "Published: clipped sphere from a table, rational edge, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
-shapes = ["rectangle"]
+citation = "Hill & Heitz 2016; Heitz & Hill 2017; Snyder 1996; Heitz et al. 2016"
+author_note = "Published: clipped sphere from a table, rational edge, disks by a cubic, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, disks and spheres by their cone, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
+shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel"]
 exact = ["point_limit"]
 
@@ -20,7 +20,7 @@ choices = [
 
 [[option]]
 name = "edge"
-summary = "Angle over sine of the edge integral"
+summary = "Angle over sine of the rectangle's edge integral"
 choices = [
   ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
   ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
@@ -28,6 +28,14 @@ choices = [
   ["quadratic", "the rational fit for the specular lobe, a quadratic for the diffuse one"],
   ["acos", "the language's arc cosine"],
   ["fast_acos", "the four-term arc cosine that GPUs run"],
+]
+
+[[option]]
+name = "disk"
+summary = "Disks and spheres"
+choices = [
+  ["cone", "the vector form factor of their cone of directions by one root"],
+  ["eigen", "the cone's axes by a cubic, no guard where two axes are equal: can give no number"],
 ]
 
 [[option]]
@@ -43,7 +51,7 @@ name = "lobes"
 summary = "Lobes of the fit"
 choices = [
   ["one", "one transformed cosine"],
-  ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt" }],
+  ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -59,8 +67,8 @@ name = "norm"
 summary = "What the stored matrix is divided by"
 choices = [
   ["middle", "its middle element: four terms"],
-  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal" }],
-  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal" }],
+  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -68,8 +76,8 @@ name = "axis"
 summary = "View angles of the tables' rows"
 choices = [
   ["sqrt", "over √(1 − cos θ)"],
-  ["cos", "over cos θ", { fit = "l3", frame = "normal" }],
-  ["theta", "over θ", { fit = "l3", frame = "normal" }],
+  ["cos", "over cos θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["theta", "over θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -81,13 +89,14 @@ choices = [
 ]
 
 [tables]
-ltc_matrix = "ltc_ggx_{fit}_{lobes}_lobe_{frame}_{norm}_{axis}.exr"
-ltc_terms = "ltc_ggx_{fit}_{lobes}_lobe_{axis}_terms.exr"
+ltc_matrix = "ltc_{brdf}_{fit}_{lobes}_lobe_{frame}_{norm}_{axis}.exr"
+ltc_terms = "ltc_{brdf}_{fit}_{lobes}_lobe_{axis}_terms.exr"
 sphere = "sphere.exr"
 
 [published]
 sphere = "table"
 edge = "rational"
+disk = "eigen"
 fit = "l3"
 frame = "normal"
 fresnel = "lobe"
@@ -99,21 +108,31 @@ fresnel = "lobe"
 #include "edge"
 #include "sphere"
 #include "vector_form_factor.glsl"
+#include "disk"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
-  RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
   LtcCell cell = LookUpLtc(surface.roughness, frame);
 
-  vec3 center = LtcTransform(cell.m, view.center);
-  vec3 half_a = LtcTransform(cell.m, view.half_a);
-  vec3 half_b = LtcTransform(cell.m, view.half_b);
-  float form_factor = ClippedProxy(LambertVector(view));
-  VectorFormFactor transformed = ParallelogramVector(center, half_a, half_b);
-  float above = ClippedProxy(transformed);
-  float lobe = LtcLobe(above, form_factor, cell.terms);
+  float form_factor;
+  vec3 transformed;
+  if (light.shape == SHAPE_RECTANGLE) {
+    RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
+    form_factor = ClippedProxy(LambertVector(view));
+    VectorFormFactor whole = ParallelogramVector(LtcTransform(cell.m, view.center), LtcTransform(cell.m, view.half_a), LtcTransform(cell.m, view.half_b));
+    transformed = vec3(whole.f.x, whole.f.y, ClippedProxy(whole));
+  } else if (light.shape == SHAPE_DISK) {
+    DiskView view = ViewDisk(light, surface.position, frame);
+    form_factor = LambertDisk(view);
+    transformed = LobeOfDisk(cell.m, view);
+  } else {
+    SphereView view = ViewSphere(light, surface.position, frame);
+    form_factor = LambertSphere(view);
+    transformed = LobeOfSphere(cell.m, view);
+  }
+  float lobe = LtcLobe(transformed.z, form_factor, cell.terms);
   Radiance result;
   result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
-  result.specular = LtcReflectance(surface.f0, cell.terms, cell.m, frame.n_dot_v, frame.sine, vec3(transformed.f.x, transformed.f.y, above)) * light.radiance * lobe;
+  result.specular = LtcReflectance(surface.f0, cell.terms, cell.m, frame.n_dot_v, frame.sine, transformed) * light.radiance * lobe;
   return result;
 }

@@ -1,16 +1,16 @@
 /*---
 summary = "Linearly transformed cosines, clipped exactly at the horizon"
-citation = "Heitz et al. 2016; Hill & Heitz 2016; Lambert 1760"
-author_note = "Published: 16-case clip, rational edge, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: branchless clip in the light's plane, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
-shapes = ["rectangle"]
+citation = "Heitz et al. 2016; Hill & Heitz 2016; Heitz & Hill 2017; Lambert 1760"
+author_note = "Published: 16-case clip, rational edge, disks by a cubic and a proxy sphere (no exact clip was), tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: branchless clip in the light's plane, disks and spheres by their cone and exactly clipped, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
+shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel"]
-exact = ["lambert_rectangle", "point_limit"]
+exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "point_limit"]
 
 [[option]]
 name = "clip"
-summary = "Clipping at the horizon"
+summary = "Clipping of rectangles at the horizon"
 choices = [
   ["arc", "branchless in the light's plane, the closing side as an arc"],
   ["switch", "one case for each set of corners above the horizon"],
@@ -20,7 +20,7 @@ choices = [
 
 [[option]]
 name = "edge"
-summary = "Angle over sine of the edge integral"
+summary = "Angle over sine of the rectangle's edge integral"
 choices = [
   ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
   ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
@@ -28,6 +28,14 @@ choices = [
   ["quadratic", "the rational fit for the specular lobe, a quadratic for the diffuse one"],
   ["acos", "the language's arc cosine"],
   ["fast_acos", "the four-term arc cosine that GPUs run"],
+]
+
+[[option]]
+name = "disk"
+summary = "Disks and spheres"
+choices = [
+  ["exact", "the cone of their directions by one root, clipped exactly"],
+  ["proxy", "the cone's axes by a cubic, the proxy sphere from a table, no guard where two axes are equal: can give no number"],
 ]
 
 [[option]]
@@ -43,7 +51,7 @@ name = "lobes"
 summary = "Lobes of the fit"
 choices = [
   ["one", "one transformed cosine"],
-  ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", horizon = "lobe" }],
+  ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", horizon = "lobe", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -59,8 +67,8 @@ name = "norm"
 summary = "What the stored matrix is divided by"
 choices = [
   ["middle", "its middle element: four terms"],
-  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal" }],
-  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal" }],
+  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -68,8 +76,8 @@ name = "axis"
 summary = "View angles of the tables' rows"
 choices = [
   ["sqrt", "over √(1 − cos θ)"],
-  ["cos", "over cos θ", { fit = "l3", frame = "normal" }],
-  ["theta", "over θ", { fit = "l3", frame = "normal" }],
+  ["cos", "over cos θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["theta", "over θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -77,7 +85,7 @@ name = "horizon"
 summary = "Which horizon clips the specular lobe"
 choices = [
   ["lobe", "the transformed lobe's own"],
-  ["true", "the surface's too, both streamed, with tables fitted for it", { fit = "polygon", lobes = "one", frame = "mirror" }],
+  ["true", "the surface's too, both streamed, with tables fitted for it; disks and spheres at the lobe's alone", { fit = "polygon", lobes = "one", frame = "mirror", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -89,12 +97,14 @@ choices = [
 ]
 
 [tables]
-ltc_matrix = "ltc_ggx_{fit}_{lobes}_{horizon}_{frame}_{norm}_{axis}.exr"
-ltc_terms = "ltc_ggx_{fit}_{lobes}_{horizon}_{axis}_terms.exr"
+ltc_matrix = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{frame}_{norm}_{axis}.exr"
+ltc_terms = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{axis}_terms.exr"
+sphere = "sphere.exr"
 
 [published]
 clip = "switch"
 edge = "rational"
+disk = "proxy"
 fit = "l3"
 frame = "normal"
 fresnel = "lobe"
@@ -106,14 +116,27 @@ fresnel = "lobe"
 #include "edge"
 #include "clip"
 #include "horizon"
+#include "disk"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
-  RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
   LtcCell cell = LookUpLtc(surface.roughness, frame);
 
-  float form_factor = ClippedLambert(view);
-  vec3 transformed = LobeVector(cell.m, view);
+  float form_factor;
+  vec3 transformed;
+  if (light.shape == SHAPE_RECTANGLE) {
+    RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
+    form_factor = ClippedLambert(view);
+    transformed = LobeVector(cell.m, view);
+  } else if (light.shape == SHAPE_DISK) {
+    DiskView view = ViewDisk(light, surface.position, frame);
+    form_factor = LambertDisk(view);
+    transformed = LobeOfDisk(cell.m, view);
+  } else {
+    SphereView view = ViewSphere(light, surface.position, frame);
+    form_factor = LambertSphere(view);
+    transformed = LobeOfSphere(cell.m, view);
+  }
   float lobe = LtcLobe(transformed.z, form_factor, cell.terms);
   Radiance result;
   result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;

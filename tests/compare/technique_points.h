@@ -20,6 +20,7 @@
 #include "compare/context.h"
 #include "compare/truth.h"
 #include "glsl/program.h"
+#include "glsl/table.h"
 #include "glsl/variant.h"
 
 namespace arealab {
@@ -170,6 +171,20 @@ class TechniquePoints {
     for (const Knob& knob : variant.technique->knobs) {
       const auto set = knobs.find(knob.name);
       program.Set("knob_" + knob.name, static_cast<float>(set == knobs.end() ? knob.initial : set->second));
+    }
+    std::vector<GlObject> tables;
+    for (const Table& table : variant.technique->tables) {
+      std::string file = table.file;
+      for (const auto& [option, choice] : variant.options) {
+        const std::string slot = "{" + option + "}";
+        if (const auto at = file.find(slot); at != std::string::npos) file.replace(at, slot.size(), choice);
+      }
+      const auto bytes = library_.Find("tables/" + file);
+      if (!bytes) throw std::runtime_error("no table " + file);
+      const auto unit = static_cast<GLuint>(3 + tables.size());
+      tables.push_back(UploadTable(gl, DecodeTable(*bytes, file)));
+      gl.BindTextureUnit(unit, tables.back().id());
+      program.Set("table_" + table.name, static_cast<int>(unit));
     }
     const int rows = static_cast<int>((cases.size() + kColumns - 1) / kColumns);
     const glm::ivec2 size(kColumns, rows);
