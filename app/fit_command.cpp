@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <map>
 
 #include "app/commands.h"
 #include "app/progress.h"
@@ -17,18 +17,18 @@ struct FitArguments {
   std::string quality;
 };
 
-void PrintQuality(const std::filesystem::path& folder) {
-  const std::map<std::string, FitKind> kinds = {{"ltc_ggx_polygon", FitKind::kPolygon},
-                                                {"ltc_ggx_cosine", FitKind::kCosine},
-                                                {"ltc_ggx_horizon", FitKind::kHorizon},
-                                                {"ltc_ggx_l3", FitKind::kPublished}};
-  for (const auto& [name, kind] : kinds) {
-    FitQuality quality;
-    {
-      Progress progress;
-      quality = MeasureFit(ReadLtcTables(folder, kind), {}, [&](double fraction) { progress.Show(name, fraction); });
+void PrintQuality(const std::filesystem::path& folder, const std::vector<std::string>& names) {
+  for (const Brdf brdf : kBrdfs) {
+    for (const FitKind kind : KindsOf(brdf)) {
+      const std::string name = TableName(brdf, kind);
+      if (!names.empty() && std::find(names.begin(), names.end(), name) == names.end()) continue;
+      FitQuality quality;
+      {
+        Progress progress;
+        quality = MeasureFit(ReadLtcTables(folder, brdf, kind), {}, [&](double fraction) { progress.Show(name, fraction); });
+      }
+      fmt::print("{}\n\n{}\n", name, QualityTable(quality));
     }
-    fmt::print("{}\n\n{}\n", name, QualityTable(quality));
   }
 }
 
@@ -37,7 +37,7 @@ void RunFit(const FitArguments& arguments) {
     throw InputError("arealab fit takes either --out or --quality; expected one of them");
   }
   if (!arguments.quality.empty()) {
-    PrintQuality(arguments.quality);
+    PrintQuality(arguments.quality, arguments.options.tables);
     return;
   }
   {

@@ -112,16 +112,16 @@ class Progress {
 };
 
 // All nodes of the given columns; the others stay 0.
-LtcTables FitColumns(FitKind kind, const FitOptions& options, const std::vector<int>& columns,
+LtcTables FitColumns(Brdf brdf, FitKind kind, const FitOptions& options, const std::vector<int>& columns,
                      const std::function<void(double)>& report) {
   const int size = options.size;
-  LtcTables tables{kind, OwnStorage(kind), size, {}, {}};
+  LtcTables tables{brdf, kind, OwnStorage(kind), size, {}, {}};
   const auto count = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   tables.matrix.resize(count);
   tables.terms.resize(count);
   Progress progress(report, static_cast<int>(columns.size()));
   const auto view_of = [&](int row, int column) {
-    return fit::MakeView(NodeRoughness(column, size), NodeCosine(kind, LtcAxis::kSqrt, row, size));
+    return fit::MakeView(brdf, NodeRoughness(column, size), NodeCosine(kind, LtcAxis::kSqrt, row, size));
   };
   const auto texel = [&](int row, int column) { return static_cast<std::size_t>(row * size + column); };
   if (kind == FitKind::kPublished) {
@@ -162,13 +162,13 @@ LtcTables FitColumns(FitKind kind, const FitOptions& options, const std::vector<
 std::string Stem(FitKind kind) {
   switch (kind) {
     case FitKind::kPolygon:
-      return "ltc_ggx_polygon";
+      return "polygon";
     case FitKind::kCosine:
-      return "ltc_ggx_cosine";
+      return "cosine";
     case FitKind::kHorizon:
-      return "ltc_ggx_horizon";
+      return "horizon";
     case FitKind::kPublished:
-      return "ltc_ggx_l3";
+      return "l3";
   }
   return {};
 }
@@ -177,13 +177,13 @@ std::string Stem(FitKind kind) {
 std::string FilePrefix(FitKind kind) {
   switch (kind) {
     case FitKind::kPolygon:
-      return "ltc_ggx_polygon_one_lobe";
+      return "polygon_one_lobe";
     case FitKind::kCosine:
-      return "ltc_ggx_polygon_cosine_lobe";
+      return "polygon_cosine_lobe";
     case FitKind::kHorizon:
-      return "ltc_ggx_polygon_one_true";
+      return "polygon_one_true";
     case FitKind::kPublished:
-      return "ltc_ggx_l3_one_lobe";
+      return "l3_one_lobe";
   }
   return {};
 }
@@ -227,14 +227,16 @@ std::vector<glm::vec4> ReadExr(const std::filesystem::path& file, int* size) {
 
 }  // namespace
 
-std::string MatrixFile(FitKind kind, const LtcStorage& storage) {
-  return fmt::format(
-      "{}_{}_{}_{}.exr", FilePrefix(kind), kFrameNames[static_cast<std::size_t>(storage.frame)],
-      kNormNames[static_cast<std::size_t>(storage.norm)], kAxisNames[static_cast<std::size_t>(storage.axis)]);
+std::string MatrixFile(Brdf brdf, FitKind kind, const LtcStorage& storage) {
+  return fmt::format("ltc_{}_{}_{}_{}_{}.exr", Name(brdf), FilePrefix(kind),
+                     kFrameNames[static_cast<std::size_t>(storage.frame)],
+                     kNormNames[static_cast<std::size_t>(storage.norm)],
+                     kAxisNames[static_cast<std::size_t>(storage.axis)]);
 }
 
-std::string TermsFile(FitKind kind, LtcAxis axis) {
-  return fmt::format("{}_{}_terms.exr", FilePrefix(kind), kAxisNames[static_cast<std::size_t>(axis)]);
+std::string TermsFile(Brdf brdf, FitKind kind, LtcAxis axis) {
+  return fmt::format("ltc_{}_{}_{}_terms.exr", Name(brdf), FilePrefix(kind),
+                     kAxisNames[static_cast<std::size_t>(axis)]);
 }
 
 LtcStorage OwnStorage(FitKind kind) {
@@ -243,7 +245,7 @@ LtcStorage OwnStorage(FitKind kind) {
   return storage;
 }
 
-std::vector<LtcStorage> StoragesOf(FitKind kind) {
+std::vector<LtcStorage> StoragesOf(Brdf brdf, FitKind kind) {
   std::vector<LtcStorage> storages{OwnStorage(kind)};
   const auto add = [&](const LtcStorage& storage) {
     if (std::find(storages.begin(), storages.end(), storage) == storages.end()) storages.push_back(storage);
@@ -252,7 +254,7 @@ std::vector<LtcStorage> StoragesOf(FitKind kind) {
     add({LtcFrame::kMirror, LtcNorm::kMiddle, LtcAxis::kSqrt});
     add({LtcFrame::kNormal, LtcNorm::kMiddle, LtcAxis::kSqrt});
   }
-  if (kind == FitKind::kPublished) {  // the talk's own
+  if (brdf == Brdf::kGgx && kind == FitKind::kPublished) {  // the talk's own
     for (const LtcNorm norm : {LtcNorm::kMiddle, LtcNorm::kNone, LtcNorm::kLast})
       for (const LtcAxis axis : {LtcAxis::kSqrt, LtcAxis::kCos, LtcAxis::kTheta})
         add({LtcFrame::kNormal, norm, axis});
@@ -261,7 +263,7 @@ std::vector<LtcStorage> StoragesOf(FitKind kind) {
 }
 
 LtcTables Restored(const LtcTables& tables, const LtcStorage& storage) {
-  LtcTables restored{tables.kind, storage, tables.size, tables.matrix, tables.terms};
+  LtcTables restored{tables.brdf, tables.kind, storage, tables.size, tables.matrix, tables.terms};
   for (int row = 0; row < tables.size; ++row) {
     const double cosine = NodeCosine(tables.kind, storage.axis, row, tables.size);
     for (int column = 0; column < tables.size; ++column) {
@@ -278,18 +280,32 @@ LtcTables Restored(const LtcTables& tables, const LtcStorage& storage) {
   return restored;
 }
 
-std::vector<std::string> TableNames() {
-  return {"ltc_ggx_cosine", "ltc_ggx_horizon", "ltc_ggx_l3", "ltc_ggx_polygon", "sphere"};
+std::vector<FitKind> KindsOf(Brdf brdf) {
+  if (brdf == Brdf::kGgx) return {std::begin(kKinds), std::end(kKinds)};
+  return {FitKind::kPolygon, FitKind::kPublished};
 }
 
-LtcTables FitLtc(FitKind kind, const FitOptions& options, const std::function<void(double)>& progress) {
+std::string TableName(Brdf brdf, FitKind kind) {
+  return fmt::format("ltc_{}_{}", Name(brdf), Stem(kind));
+}
+
+std::vector<std::string> TableNames() {
+  std::vector<std::string> names;
+  for (const Brdf brdf : kBrdfs)
+    for (const FitKind kind : KindsOf(brdf)) names.push_back(TableName(brdf, kind));
+  names.emplace_back("sphere");
+  return names;
+}
+
+LtcTables FitLtc(Brdf brdf, FitKind kind, const FitOptions& options,
+                 const std::function<void(double)>& progress) {
   std::vector<int> columns(static_cast<std::size_t>(options.size));
   for (int i = 0; i < options.size; ++i) columns[static_cast<std::size_t>(i)] = i;
-  return FitColumns(kind, options, columns, progress);
+  return FitColumns(brdf, kind, options, columns, progress);
 }
 
-LtcTables FitLtcColumns(FitKind kind, const FitOptions& options, const std::vector<int>& columns) {
-  return FitColumns(kind, options, columns, {});
+LtcTables FitLtcColumns(Brdf brdf, FitKind kind, const FitOptions& options, const std::vector<int>& columns) {
+  return FitColumns(brdf, kind, options, columns, {});
 }
 
 LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v) {
@@ -346,6 +362,21 @@ std::vector<float> FitSphere(int size) {
   return table;
 }
 
+namespace {
+
+// Lobes in all their storages.
+void WriteLtc(const std::filesystem::path& folder, const LtcTables& own) {
+  for (const LtcStorage& storage : StoragesOf(own.brdf, own.kind)) {
+    const LtcTables tables = storage == own.storage ? own : Restored(own, storage);
+    WriteExr(folder / MatrixFile(own.brdf, own.kind, storage), own.size, 4, &tables.matrix[0].x);
+    const bool first_of_axis = storage.axis != LtcAxis::kSqrt || storage == own.storage;
+    if (first_of_axis && storage.norm == LtcNorm::kMiddle)
+      WriteExr(folder / TermsFile(own.brdf, own.kind, storage.axis), own.size, 4, &tables.terms[0].x);
+  }
+}
+
+}  // namespace
+
 void FitTables(const std::filesystem::path& folder, const FitOptions& options,
                const std::function<void(double)>& progress) {
   if (options.size < 2) throw InputError(fmt::format("table size {}; expected at least 2", options.size));
@@ -369,36 +400,30 @@ void FitTables(const std::filesystem::path& folder, const FitOptions& options,
       part(1.0);
       continue;
     }
-    for (const FitKind kind : kKinds) {
-      if (name != Stem(kind)) continue;
-      const LtcTables own = FitLtc(kind, options, part);
-      for (const LtcStorage& storage : StoragesOf(kind)) {
-        const LtcTables tables = storage == own.storage ? own : Restored(own, storage);
-        WriteExr(folder / MatrixFile(kind, storage), options.size, 4, &tables.matrix[0].x);
-        const bool first_of_axis = storage.axis != LtcAxis::kSqrt || storage == own.storage;
-        if (first_of_axis && storage.norm == LtcNorm::kMiddle)
-          WriteExr(folder / TermsFile(kind, storage.axis), options.size, 4, &tables.terms[0].x);
-      }
-    }
+    for (const Brdf brdf : kBrdfs)
+      for (const FitKind kind : KindsOf(brdf))
+        if (name == TableName(brdf, kind)) WriteLtc(folder, FitLtc(brdf, kind, options, part));
   }
 }
 
-LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind, const LtcStorage& storage) {
+LtcTables ReadLtcTables(const std::filesystem::path& folder, Brdf brdf, FitKind kind,
+                        const LtcStorage& storage) {
   LtcTables tables;
+  tables.brdf = brdf;
   tables.kind = kind;
   tables.storage = storage;
-  const std::filesystem::path matrix = folder / MatrixFile(kind, storage);
+  const std::filesystem::path matrix = folder / MatrixFile(brdf, kind, storage);
   tables.matrix = ReadExr(matrix, &tables.size);
   int terms_size = 0;
-  tables.terms = ReadExr(folder / TermsFile(kind, storage.axis), &terms_size);
+  tables.terms = ReadExr(folder / TermsFile(brdf, kind, storage.axis), &terms_size);
   if (terms_size != tables.size)
     throw InputError(
         fmt::format("{}: sizes {} and {}; expected the same", matrix.string(), tables.size, terms_size));
   return tables;
 }
 
-LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind) {
-  return ReadLtcTables(folder, kind, OwnStorage(kind));
+LtcTables ReadLtcTables(const std::filesystem::path& folder, Brdf brdf, FitKind kind) {
+  return ReadLtcTables(folder, brdf, kind, OwnStorage(kind));
 }
 
 }  // namespace arealab

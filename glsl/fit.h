@@ -9,12 +9,13 @@
 // The column of roughness 0 is fitted as any other, at alpha = 1e-4: m' is diag(c, 1, 2 alpha c) there to
 // 2e-4.
 //
-// ltc_ggx_FIT_LOBES_HORIZON_FRAME_NORM_AXIS.exr, M⁻¹ = [[m0, 0, m2], [0, 1, 0], [m1, 0, m3]] (rows), from
+// ltc_BRDF_FIT_LOBES_HORIZON_FRAME_NORM_AXIS.exr, BRDF a scene's choice, M⁻¹ = [[m0, 0, m2], [0, 1, 0], [m1, 0, m3]] (rows), from
 // local directions to cosine space. What was fitted, once each (the stem that `arealab fit --table` takes):
 //   polygon_one_lobe (ltc_ggx_polygon)    ours, on polygons
 //   polygon_cosine_lobe (ltc_ggx_cosine)  the same beside a signed share of the plain cosine lobe
 //   polygon_one_true (ltc_ggx_horizon)    the same for a shader that clips at the surface's horizon too
 //   l3_one_lobe (ltc_ggx_l3)              the published kind [Heitz et al. 2016]
+// for ggx; the other BRDFs have the first and the last.
 // and how the lobes are stored, which moves what lies between the nodes:
 //   frame: mirror, m' of M⁻¹·R with m0' = m0 c + m2 s, m1' = m1 c + m3 s, m2' = m2 c − m0 s, m3' = m3 c − m1
 //   s, c = cos θ
@@ -50,6 +51,8 @@
 #include <string>
 #include <vector>
 
+#include "scenes/scene.h"
+
 namespace arealab {
 
 enum class FitKind { kPolygon, kCosine, kHorizon, kPublished };
@@ -65,9 +68,10 @@ struct LtcStorage {
 };
 LtcStorage OwnStorage(FitKind kind);
 // All that are written, its own first.
-std::vector<LtcStorage> StoragesOf(FitKind kind);
+std::vector<LtcStorage> StoragesOf(Brdf brdf, FitKind kind);
 
 struct LtcTables {
+  Brdf brdf = Brdf::kGgx;
   FitKind kind = FitKind::kPolygon;
   LtcStorage storage;
   int size = 0;
@@ -95,15 +99,22 @@ struct FitOptions {
   std::vector<std::string> tables;  // stems among TableNames(); empty: all
 };
 
-// "ltc_ggx_cosine", "ltc_ggx_horizon", "ltc_ggx_l3", "ltc_ggx_polygon", "sphere".
+// What is fitted for each BRDF, once each.
+std::vector<FitKind> KindsOf(Brdf brdf);
+
+// "ltc_ggx_polygon", "ltc_ward_l3": as `arealab fit --table` takes it.
+std::string TableName(Brdf brdf, FitKind kind);
+
+// All of them, and "sphere".
 std::vector<std::string> TableNames();
 
 // Fits one kind on all cores; the same numbers on any number of threads. `progress` (may be empty) gets the
 // fraction done, one call at a time.
-LtcTables FitLtc(FitKind kind, const FitOptions& options, const std::function<void(double)>& progress = {});
+LtcTables FitLtc(Brdf brdf, FitKind kind, const FitOptions& options,
+                 const std::function<void(double)>& progress = {});
 
 // The nodes of `columns` alone, as FitLtc finds them (a view-angle chain per column): what the tests refit.
-LtcTables FitLtcColumns(FitKind kind, const FitOptions& options, const std::vector<int>& columns);
+LtcTables FitLtcColumns(Brdf brdf, FitKind kind, const FitOptions& options, const std::vector<int>& columns);
 
 // Row-major [row · size + column], as in sphere.exr.
 std::vector<float> FitSphere(int size);
@@ -123,10 +134,10 @@ void FitTables(const std::filesystem::path& folder, const FitOptions& options,
 // own clipped form factor.
 double LtcQuadIntegral(const glm::dvec4& m, const std::array<glm::dvec3, 4>& corners);
 
-// ∫ρ over a quadrilateral, ρ = GGX BRDF × n·l with Fresnel 1, in the local frame: the reference of
+// ∫ρ over a quadrilateral, ρ = BRDF × n·l with Fresnel 1, in the local frame: the reference of
 // MeasureFit.
 double LobeQuadIntegral(double roughness, double n_dot_v, const std::array<glm::dvec3, 4>& corners,
-                        int nodes = 96);
+                        int nodes = 96, Brdf brdf = Brdf::kGgx);
 
 // How far a shader's integral with these tables (bilinear look-up, exact clip) is from the lobe's, over
 // random rectangles.
@@ -159,11 +170,11 @@ FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options = {
 std::string QualityTable(const FitQuality& quality);
 
 // The files' names, without the folder.
-std::string MatrixFile(FitKind kind, const LtcStorage& storage);
-std::string TermsFile(FitKind kind, LtcAxis axis);
+std::string MatrixFile(Brdf brdf, FitKind kind, const LtcStorage& storage);
+std::string TermsFile(Brdf brdf, FitKind kind, LtcAxis axis);
 
 // Reads both. Throws InputError.
-LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind, const LtcStorage& storage);
-LtcTables ReadLtcTables(const std::filesystem::path& folder, FitKind kind);  // in its own storage
+LtcTables ReadLtcTables(const std::filesystem::path& folder, Brdf brdf, FitKind kind, const LtcStorage& storage);
+LtcTables ReadLtcTables(const std::filesystem::path& folder, Brdf brdf, FitKind kind);  // in its own storage
 
 }  // namespace arealab

@@ -357,7 +357,11 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
 }
 
 PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, const AverageFrameTerms& start) {
-  const LobeMoments moments = SampledMoments(view, kPublishedSamples);
+  // The authors' estimator draws from the lobe's own density; where that is not GGX's, which ours draws from,
+  // quadrature does them more justice.
+  const bool sampled = view.brdf == Brdf::kGgx || view.brdf == Brdf::kGgxSeparable;
+  const LobeMoments moments = sampled ? SampledMoments(view, kPublishedSamples)
+                                      : Moments(UpperNodes(view, kAlbedoNodes, kAlbedoNodes));
   const Whitening mirror = MirrorWhitening(view);
   Nodes all = UpperNodes(view, nodes, nodes);
   AppendLowerNodes(mirror, nodes, &all);

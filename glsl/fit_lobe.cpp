@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <mutex>
 
 #include "glsl/dual_begin.h"
 
 #include "glsl/brdf.glsl"
+
+#include "glsl/brdf_choices.h"
 
 #include "glsl/dual_end.h"
 
@@ -39,19 +42,45 @@ std::vector<std::pair<double, double>> MakeGaussRule(int count) {
   return rule;
 }
 
+// The slope tan θh beyond which a lobe has less than e⁻³⁶ of its peak, towards azimuth φ; infinite for those
+// with GGX's tail.
+double LastSlope(const View& view, double cos_phi) {
+  constexpr double kNegligible = 36.0;
+  const double alpha2 = view.alpha * view.alpha, c = view.cosine, s = view.sine;
+  switch (view.brdf) {
+    case Brdf::kBeckmann:
+    case Brdf::kWard:
+      return view.alpha * std::sqrt(kNegligible);
+    case Brdf::kBlinnPhong:
+      return std::sqrt(std::expm1(kNegligible / (1.0 / alpha2 + 1.0)));
+    case Brdf::kPhong: {
+      // r·l = 2 (c² − s² τ² cos²φ)/(1 + τ²) − c² + s² is 1 − x.
+      const double x = -std::expm1(-2.0 * alpha2 * kNegligible);
+      const double rest = 2.0 * c * c - x + 2.0 * s * s * cos_phi * cos_phi;
+      return rest > 0.0 ? std::sqrt(x / rest) : std::numeric_limits<double>::infinity();
+    }
+    case Brdf::kGgx:
+    case Brdf::kGgxSeparable:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
-View MakeView(double roughness, double cosine) {
+View MakeView(Brdf brdf, double roughness, double cosine) {
   const double alpha = std::max(roughness * roughness, dual::kMinAlpha);
-  return {alpha, cosine, std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)))};
+  return {brdf, alpha, cosine, std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)))};
 }
 
 double LobeDensity(const View& view, const glm::dvec3& to_light) {
   if (to_light.z <= 0.0) return 0.0;
   const glm::dvec3 half = glm::normalize(view.ToView() + to_light);
   // The sine keeps the digits of the peak; GgxDensity's own argument cannot hold α = 1e-4 to more than 1e-8.
-  return dual::GgxDensity(half.z, view.alpha) * dual::SmithVisibility(view.cosine, to_light.z, view.alpha) *
-         to_light.z;
+  const double tan2 = (half.x * half.x + half.y * half.y) / (half.z * half.z);
+  const double v_dot_h = glm::dot(view.ToView(), half);
+  return dual::GgxDensity(half.z, view.alpha) *
+         dual::BrdfOverGgx(view.brdf, view.cosine, to_light.z, v_dot_h, tan2, view.alpha) * to_light.z;
 }
 
 const std::vector<std::pair<double, double>>& GaussRule(int count) {
@@ -78,7 +107,7 @@ Nodes UpperNodes(const View& view, int radial, int azimuthal) {
       const double k = s * cos_phi;
       const double root = std::sqrt(k * k + c * c);
       const double tan_last = k > 0.0 ? (k + root) / c : c / (root - k);
-      const double last = std::asinh(tan_last / alpha);
+      const double last = std::asinh(std::min(tan_last, LastSlope(view, cos_phi)) / alpha);
       for (const auto& [t_position, t_weight] : across) {
         const double t = last * t_position;
         const double tan_h = alpha * std::sinh(t);
@@ -98,7 +127,8 @@ Nodes UpperNodes(const View& view, int radial, int azimuthal) {
         const double shape = 1.0 + tan2 / (alpha * alpha);
         const double density =
             (1.0 + tan2) * (1.0 + tan2) / (glm::pi<double>() * alpha * alpha * shape * shape);
-        nodes.density.push_back(density * dual::SmithVisibility(c, n_dot_l, alpha) * n_dot_l);
+        nodes.density.push_back(density * dual::BrdfOverGgx(view.brdf, c, n_dot_l, v_dot_h, tan2, alpha) *
+                                n_dot_l);
         nodes.schlick.push_back(dual::SchlickWeight(v_dot_h));
       }
     }
@@ -145,8 +175,9 @@ LobeMoments SampledMoments(const View& view, int count) {
       const glm::dvec3 to_light = 2.0 * v_dot_h * half - to_view;
       if (to_light.z <= 0.0) continue;
       // ρ over the samples' density D h·n/(4 |v·h|).
-      const double share = dual::SmithVisibility(view.cosine, to_light.z, view.alpha) * to_light.z * 4.0 *
-                           std::abs(v_dot_h) / half.z;
+      const double over_ggx =
+          dual::BrdfOverGgx(view.brdf, view.cosine, to_light.z, std::abs(v_dot_h), tan_h * tan_h, view.alpha);
+      const double share = over_ggx * to_light.z * 4.0 * std::abs(v_dot_h) / half.z;
       moments.albedo += share;
       moments.schlick += share * dual::SchlickWeight(v_dot_h);
       sum += share * to_light;

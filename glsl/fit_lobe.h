@@ -6,10 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/scene.h"
+
 namespace arealab::fit {
 
 struct View {
-  double alpha = 1.0;   // GGX, roughness², at least kMinAlpha of glsl/surface.glsl
+  Brdf brdf = Brdf::kGgx;
+  double alpha = 1.0;   // roughness², at least kMinAlpha of glsl/surface.glsl
   double cosine = 1.0;  // n·v in (0, 1]
   double sine = 0.0;
 
@@ -17,7 +20,7 @@ struct View {
   glm::dvec3 Mirror() const { return {-sine, 0.0, cosine}; }
 };
 
-View MakeView(double roughness, double cosine);
+View MakeView(Brdf brdf, double roughness, double cosine);
 
 // ρ = BRDF × n·l with Fresnel 1, 1/sr; 0 below the horizon. `to_light` is unit.
 double LobeDensity(const View& view, const glm::dvec3& to_light);
@@ -36,7 +39,8 @@ struct Nodes {
 const std::vector<std::pair<double, double>>& GaussRule(int count);
 
 // Nodes above the horizon, on the half y ≥ 0 with doubled weights: the lobe is symmetric in y. Half vectors
-// in polar coordinates, tan θh = α sinh t with t cut exactly where the light reaches the horizon; `radial`
+// in polar coordinates, tan θh = α sinh t with t cut exactly where the light reaches the horizon, or before it where a steep
+// lobe has less than e⁻³⁶ of its peak; `radial`
 // points in t, `azimuthal` in φ ∈ [0, π], half of them on each side of π/2, where the cut turns quickly at
 // grazing views.
 Nodes UpperNodes(const View& view, int radial, int azimuthal);
@@ -51,7 +55,7 @@ struct LobeMoments {
 };
 LobeMoments Moments(const Nodes& upper);
 
-// The same by the estimator of the published fit: `count`² mid-point samples of the half vector by D, uniform
+// The same by the estimator of the published fit: `count`² mid-point samples of the half vector by GGX's D, uniform
 // in azimuth and in tan²θ/(α² + tan²θ). It cuts the lobe's tail short, which at grazing views moves the mean
 // direction by degrees and the albedo by percents; the shipped tables carry that error.
 LobeMoments SampledMoments(const View& view, int count);

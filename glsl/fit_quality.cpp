@@ -30,7 +30,7 @@ fit::Cell Control(const fit::View& view) {
 }
 
 void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int nodes, Point* point) {
-  const fit::View view = fit::MakeView(point->roughness, std::cos(glm::radians(point->degrees)));
+  const fit::View view = fit::MakeView(tables.brdf, point->roughness, std::cos(glm::radians(point->degrees)));
   const std::vector<double> wanted = fit::LobeIntegrals(view, quads, nodes, Control(view));
   const LtcLookup look = Look(tables, point->roughness, view.cosine);
   const fit::Terms m(look.m.x, look.m.y, look.m.z, look.m.w);
@@ -56,9 +56,9 @@ double LtcQuadIntegral(const glm::dvec4& m, const std::array<glm::dvec3, 4>& cor
   return fit::QuadIntegral(fit::Terms(m.x, m.y, m.z, m.w), fit::MakeQuad(corners));
 }
 
-double LobeQuadIntegral(double roughness, double n_dot_v, const std::array<glm::dvec3, 4>& corners,
-                        int nodes) {
-  const fit::View view = fit::MakeView(roughness, n_dot_v);
+double LobeQuadIntegral(double roughness, double n_dot_v, const std::array<glm::dvec3, 4>& corners, int nodes,
+                        Brdf brdf) {
+  const fit::View view = fit::MakeView(brdf, roughness, n_dot_v);
   return fit::LobeIntegrals(view, {fit::MakeQuad(corners)}, nodes, Control(view)).front();
 }
 

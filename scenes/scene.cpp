@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 // The order of the report: from the plainest question to the fullest picture. Scenes that are not named
 // follow by name.
-constexpr const char* kOrder[] = {"gloss", "sinking", "grazing", "mirror", "strip",  "shapes",
-                                  "bulbs", "spheres", "relief",  "scan",   "sixteen"};
+constexpr const char* kOrder[] = {"gloss",  "beckmann", "sinking", "grazing", "mirror", "strip",
+                                  "shapes", "bulbs",    "spheres", "relief",  "scan",   "sixteen"};
 
 fs::path SceneFolder() {
   const char* folder = std::getenv("AREALAB_SCENES");

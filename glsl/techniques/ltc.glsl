@@ -4,7 +4,7 @@ citation = "Heitz et al. 2016; Hill & Heitz 2016; Heitz & Hill 2017; Lambert 176
 author_note = "Published: 16-case clip, rational edge, disks by a cubic and a proxy sphere (no exact clip was), tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: branchless clip in the light's plane, disks and spheres by their cone and exactly clipped, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel"]
 exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "point_limit"]
 
@@ -51,7 +51,7 @@ name = "lobes"
 summary = "Lobes of the fit"
 choices = [
   ["one", "one transformed cosine"],
-  ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", horizon = "lobe" }],
+  ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", horizon = "lobe", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -67,8 +67,8 @@ name = "norm"
 summary = "What the stored matrix is divided by"
 choices = [
   ["middle", "its middle element: four terms"],
-  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal" }],
-  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal" }],
+  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -76,8 +76,8 @@ name = "axis"
 summary = "View angles of the tables' rows"
 choices = [
   ["sqrt", "over √(1 − cos θ)"],
-  ["cos", "over cos θ", { fit = "l3", frame = "normal" }],
-  ["theta", "over θ", { fit = "l3", frame = "normal" }],
+  ["cos", "over cos θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["theta", "over θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -85,7 +85,7 @@ name = "horizon"
 summary = "Which horizon clips the specular lobe"
 choices = [
   ["lobe", "the transformed lobe's own"],
-  ["true", "the surface's too, both streamed, with tables fitted for it; disks and spheres at the lobe's alone", { fit = "polygon", lobes = "one", frame = "mirror" }],
+  ["true", "the surface's too, both streamed, with tables fitted for it; disks and spheres at the lobe's alone", { fit = "polygon", lobes = "one", frame = "mirror", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -97,8 +97,8 @@ choices = [
 ]
 
 [tables]
-ltc_matrix = "ltc_ggx_{fit}_{lobes}_{horizon}_{frame}_{norm}_{axis}.exr"
-ltc_terms = "ltc_ggx_{fit}_{lobes}_{horizon}_{axis}_terms.exr"
+ltc_matrix = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{frame}_{norm}_{axis}.exr"
+ltc_terms = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{axis}_terms.exr"
 sphere = "sphere.exr"
 
 [published]

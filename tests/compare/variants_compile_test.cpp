@@ -54,6 +54,18 @@ TEST_P(Variants, EverySupportedOneCompiles) {
     for (const Scene& scene : scenes) {
       if (is_form && !WhyUnsupported(variant, scene)) effect_sets.insert(SceneEffects(scene));
     }
+    // Nor do they look at the BRDF: the other BRDFs with the two forms.
+    for (const Brdf brdf : kBrdfs) {
+      const auto& brdfs = variant.technique->brdfs;
+      if (brdf == Brdf::kGgx || !is_form || std::count(brdfs.begin(), brdfs.end(), Name(brdf)) == 0) continue;
+      SCOPED_TRACE(variant.Name() + " with " + Name(brdf));
+      try {
+        const Program program(context->gl(), fullscreen,
+                              Expand(library, "lighting.frag", variant, AllOn(*variant.technique), GetParam(), brdf));
+      } catch (const InputError& error) {
+        ADD_FAILURE() << error.what();
+      }
+    }
     for (const Effects& effects : effect_sets) {
       std::string on;
       for (const auto& [name, value] : effects) on += value ? " " + name : "";

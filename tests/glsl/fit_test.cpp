@@ -25,8 +25,8 @@ const std::filesystem::path kTables = std::filesystem::path(AREALAB_SOURCE_DIR) 
 
 const LtcTables& Stored(FitKind kind) {
   static const LtcTables tables[] = {
-      ReadLtcTables(kTables, FitKind::kPolygon), ReadLtcTables(kTables, FitKind::kCosine),
-      ReadLtcTables(kTables, FitKind::kHorizon), ReadLtcTables(kTables, FitKind::kPublished)};
+      ReadLtcTables(kTables, Brdf::kGgx, FitKind::kPolygon), ReadLtcTables(kTables, Brdf::kGgx, FitKind::kCosine),
+      ReadLtcTables(kTables, Brdf::kGgx, FitKind::kHorizon), ReadLtcTables(kTables, Brdf::kGgx, FitKind::kPublished)};
   return tables[static_cast<std::size_t>(kind)];
 }
 
@@ -207,7 +207,7 @@ TEST(Fit, PublishedTablesAreOfThePublishedForm) {
 TEST(Fit, RefittedColumnsAreTheStoredOnes) {
   for (const FitKind kind : kKinds) {
     const std::vector<int> columns = {2, 21, 44, 63};
-    const LtcTables again = FitLtcColumns(kind, {}, columns);
+    const LtcTables again = FitLtcColumns(Brdf::kGgx, kind, {}, columns);
     for (const int column : columns) {
       for (int row = 0; row < 64; ++row) {
         const std::size_t texel = Texel(row, column, 64);
@@ -262,14 +262,14 @@ TEST(Fit, LookUpAtANodeIsTheNode) {
 // the own storage interpolates.
 TEST(Fit, EveryStorageHoldsTheSameLobes) {
   for (const FitKind kind : kKinds) {
-    for (const LtcStorage& storage : StoragesOf(kind)) {
-      const LtcTables tables = ReadLtcTables(kTables, kind, storage);
+    for (const LtcStorage& storage : StoragesOf(Brdf::kGgx, kind)) {
+      const LtcTables tables = ReadLtcTables(kTables, Brdf::kGgx, kind, storage);
       const LtcTables again = storage == OwnStorage(kind) ? Stored(kind) : Restored(Stored(kind), storage);
       for (int row = 0; row < 64; ++row) {
         for (int column = 0; column < 64; ++column) {
           const std::size_t texel = Texel(row, column, 64);
           const glm::dvec4 m = NodeMatrix(tables, row, column);
-          const std::string where = MatrixFile(kind, storage) + fmt::format(" row {} column {}", row, column);
+          const std::string where = MatrixFile(Brdf::kGgx, kind, storage) + fmt::format(" row {} column {}", row, column);
           for (int term = 0; term < 4; ++term)
             ASSERT_NEAR(tables.matrix[texel][term], again.matrix[texel][term],
                         1e-5f * (1.0f + std::abs(again.matrix[texel][term])))
@@ -428,7 +428,7 @@ TEST(Fit, SameBytesOnAnyNumberOfThreads) {
   EXPECT_EQ(std::string(input->spec().get_string_attribute("DateTime")), "");
   // Matrices of polygon 2, cosine 1, horizon 1, l3 1 + 9; terms 1, 1, 1 and 3; the sphere; no temporary file
   // stays.
-  EXPECT_EQ(files, 2 + 1 + 1 + 10 + 6 + 1);
+  EXPECT_EQ(files, 2 + 1 + 1 + 10 + 6 + 5 * 6 + 1);
 }
 
 TEST(Fit, BadUseIsRefused) {
@@ -442,7 +442,7 @@ TEST(Fit, BadUseIsRefused) {
   options.size = 4;
   std::ofstream(folder.path() / "file") << "not a folder";
   EXPECT_THROW(FitTables(folder.path() / "file", options), InputError);
-  EXPECT_THROW(ReadLtcTables(folder.path(), FitKind::kPolygon), InputError);
+  EXPECT_THROW(ReadLtcTables(folder.path(), Brdf::kGgx, FitKind::kPolygon), InputError);
 }
 
 }  // namespace

@@ -181,12 +181,12 @@ TEST(Ltc, TablesAreReadAsTheFitWroteThem) {
                               dual::last::LtcNormalised};
   const Unturned frames[] = {dual::mirror::LtcUnturned, dual::normal::LtcUnturned};
   for (const FitKind kind : {FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished}) {
-    for (const LtcStorage& storage : StoragesOf(kind)) {
-      SCOPED_TRACE(MatrixFile(kind, storage));
+    for (const LtcStorage& storage : StoragesOf(Brdf::kGgx, kind)) {
+      SCOPED_TRACE(MatrixFile(Brdf::kGgx, kind, storage));
       const Position root =
           kind == FitKind::kPublished ? dual::l3::LtcViewPosition : dual::polygon::LtcViewPosition;
       const Position positions[] = {root, dual::over_cos::LtcViewPosition, dual::over_theta::LtcViewPosition};
-      const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", kind, storage);
+      const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", Brdf::kGgx, kind, storage);
       ASSERT_EQ(tables.size, 64);  // TableCoordinates takes it for granted
       std::mt19937_64 engine(3);
       std::uniform_real_distribution<double> uniform(0.0, 1.0);

@@ -124,7 +124,7 @@ TEST(BuiltInScenes, EachLoadsAndAsksOneQuestion) {
     for (const Mesh& mesh : scene.meshes) ExpectSound(mesh);
     for (const Light& light : scene.lights) EXPECT_GT(light.Flux(), 0.0);
   }
-  EXPECT_THAT(names, ::testing::IsSupersetOf({"gloss", "sinking", "grazing", "mirror", "strip", "shapes",
+  EXPECT_THAT(names, ::testing::IsSupersetOf({"gloss", "beckmann", "sinking", "grazing", "mirror", "strip", "shapes",
                                               "bulbs", "spheres", "relief", "scan", "sixteen"}));
   EXPECT_EQ(BuiltInScenes().front().stem(), "gloss");
 }
@@ -132,6 +132,8 @@ TEST(BuiltInScenes, EachLoadsAndAsksOneQuestion) {
 TEST(BuiltInScenes, AreWhatTheirNamesSay) {
   const auto load = [](const char* name) { return LoadScene(FindScene(name)); };
   EXPECT_EQ(load("gloss").materials.at(0).roughness, glm::vec2(0.05f, 1.0f));
+  EXPECT_EQ(load("gloss").brdf, Brdf::kGgx);
+  EXPECT_EQ(load("beckmann").brdf, Brdf::kBeckmann);
   EXPECT_EQ(load("sixteen").lights.size(), 16u);
   const glm::dvec2 strip = load("strip").lights.at(0).half_size;
   EXPECT_NEAR(strip.x / strip.y, 100.0, 1e-9);
@@ -167,7 +169,7 @@ TEST(BuiltInScenes, AreFoundByNameAndOthersByPath) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("no scene 'glos'; expected a scene file's path or one of: gloss, sinking, "));
+                HasSubstr("no scene 'glos'; expected a scene file's path or one of: gloss, beckmann, sinking, "));
   }
 }
 
