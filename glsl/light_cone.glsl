@@ -14,7 +14,9 @@ vec3 LtcAdjoint(vec4 m, vec3 v) { return vec3(m.w * v.x - m.y * v.z, (m.x * m.w 
 
 struct LightCone {
   vec3 center;    // C
-  mat3 spread;    // B, symmetric
+  vec3 half_a;    // B = half_a half_aᵀ + half_b half_bᵀ + across · yyᵀ
+  vec3 half_b;
+  float across;   // 0 of a disk
   vec3 adjugate;  // adj(B) C
   float trace;    // of B
   float minors;   // k
@@ -77,7 +79,9 @@ LightCone ConeOfDisk(vec4 m, DiskView disk) {
   float n_dot_c = dot(n, z);
   LightCone cone;
   cone.center = center;
-  cone.spread = mat3(a * a.x + b * b.x, a * a.y + b * b.y, a * a.z + b * b.z);
+  cone.half_a = a;
+  cone.half_b = b;
+  cone.across = 0.0;
   cone.adjugate = n * n_dot_c;
   cone.trace = dot(a, a) + dot(b, b);
   cone.minors = dot(n, n) - dot(n_x, n_x) - dot(n_y, n_y);
@@ -97,9 +101,10 @@ LightCone ConeOfSphere(vec4 m, SphereView sphere) {
   float cos2 = 1.0 - sphere.sin2;
   LightCone cone;
   cone.center = center * scale;
-  cone.spread = mat3(spread * (m.x * m.x + m.z * m.z), 0.0, spread * (m.x * m.y + m.z * m.w),
-                     0.0, spread, 0.0,
-                     spread * (m.x * m.y + m.z * m.w), 0.0, spread * (m.y * m.y + m.w * m.w));
+  float spread_root = sqrt(spread);
+  cone.half_a = vec3(m.x, 0.0, m.y) * spread_root;
+  cone.half_b = vec3(m.z, 0.0, m.w) * spread_root;
+  cone.across = spread;
   cone.adjugate = adjoint * (spread * spread * determinant * scale);
   cone.trace = spread * squares;
   cone.minors = spread * scale2 * (dot(adjoint, adjoint) - cos2 * (dot(m, m) + determinant * determinant));
@@ -135,7 +140,9 @@ ConeVector VectorOfCone(LightCone cone) {
   ConeVector result;
   result.mu = mu;
   result.size = min(cone.root * inversesqrt(max(mu * mu * (2.0 * mu + b) + d2, 1e-30)), 1.0);
-  vec3 axis = mu * ((mu + cone.trace) * cone.center - cone.spread * cone.center) + cone.adjugate;
+  vec3 spread_c = cone.half_a * dot(cone.half_a, cone.center) + cone.half_b * dot(cone.half_b, cone.center);
+  spread_c.y += cone.across * cone.center.y;
+  vec3 axis = mu * ((mu + cone.trace) * cone.center - spread_c) + cone.adjugate;
   result.axis = axis * inversesqrt(max(dot(axis, axis), 1e-37));
   return result;
 }
@@ -157,7 +164,7 @@ vec3 ClippedConeVector(LightCone cone) {
   ConeVector whole = VectorOfCone(cone);
   float height = whole.size * whole.axis.z;
   // The horizon is a tangent plane of the cone or misses it.
-  if (cone.center.z * cone.center.z >= cone.spread[2].z) return whole.axis * (cone.center.z > 0.0 ? whole.size : 0.0);
+  if (cone.center.z * cone.center.z >= cone.half_a.z * cone.half_a.z + cone.half_b.z * cone.half_b.z) return whole.axis * (cone.center.z > 0.0 ? whole.size : 0.0);
 
   // G across e3, over a horizontal axis u and an upward one v, turned to its own axes; −ma ≤ −mb are its eigenvalues.
   vec3 e3 = whole.axis;
@@ -166,12 +173,11 @@ vec3 ClippedConeVector(LightCone cone) {
   float inverse_level = inversesqrt(max(level2, 1e-30));
   vec3 u = level2 > 1e-30 ? vec3(-e3.y * inverse_level, e3.x * inverse_level, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 v = cross(e3, u);
-  float c_u = dot(cone.center, u);
-  float c_v = dot(cone.center, v);
-  vec3 spread_v = cone.spread * v;
-  float g_uu = dot(u, cone.spread * u) - c_u * c_u;
-  float g_vv = dot(v, spread_v) - c_v * c_v;
-  float g_uv = dot(u, spread_v) - c_u * c_v;
+  vec3 over_u = vec3(dot(cone.half_a, u), dot(cone.half_b, u), dot(cone.center, u));
+  vec3 over_v = vec3(dot(cone.half_a, v), dot(cone.half_b, v), dot(cone.center, v));
+  float g_uu = over_u.x * over_u.x + over_u.y * over_u.y + cone.across * u.y * u.y - over_u.z * over_u.z;
+  float g_vv = over_v.x * over_v.x + over_v.y * over_v.y + cone.across * v.y * v.y - over_v.z * over_v.z;
+  float g_uv = over_u.x * over_v.x + over_u.y * over_v.y + cone.across * u.y * v.y - over_u.z * over_v.z;
   float half_difference = 0.5 * (g_uu - g_vv);
   float root = sqrt(half_difference * half_difference + g_uv * g_uv);
   float ma = max(0.5 * (g_uu + g_vv) + root, 1e-30);
