@@ -98,7 +98,9 @@ class LtcTechnique : public testing::Test {
     GLuint unit = 3;
     for (const Table& table : variant.technique->tables) {
       std::string file = table.file;
-      for (const auto& [option, choice] : variant.options) {
+      std::map<std::string, std::string> slots = variant.options;
+      slots["brdf"] = "ggx";
+      for (const auto& [option, choice] : slots) {
         const std::string slot = "{" + option + "}";
         if (const auto at = file.find(slot); at != std::string::npos) file.replace(at, slot.size(), choice);
       }
