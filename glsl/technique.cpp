@@ -293,7 +293,8 @@ class HeaderReader {
   }
 
   // ["arc", "branchless with the closing arc"], of an option that has its choices so far. A third element
-  // names what the choice needs of other options, and of the scene's BRDF: { fit = "polygon", brdf = "ggx" }.
+  // names what the choice needs of other options, of the scene's BRDF and of its lights' shapes:
+  // { fit = "polygon", brdf = "ggx", shape = "rectangle" }.
   Choice ReadChoice(const toml::node& node, const Option& option) const {
     const toml::array* pair = node.as_array();
     if (!pair || pair->size() < 2 || pair->size() > 3 || (pair->size() == 3 && !(*pair)[2].is_table())) {
@@ -332,6 +333,10 @@ class HeaderReader {
             CheckNeededBrdf(technique, choice, needed, line);
             continue;
           }
+          if (name == "shape") {
+            CheckNeededShape(technique, choice, needed, line);
+            continue;
+          }
           const Option& other = FindOption(technique, name, line);
           std::vector<std::string> names;
           for (const Choice& known : other.choices) names.push_back(known.name);
@@ -353,6 +358,16 @@ class HeaderReader {
     if (std::find(technique.brdfs.begin(), technique.brdfs.end(), needed) == technique.brdfs.end()) {
       Fail(line, fmt::format("choice \"{}\" needs unknown brdf \"{}\"", choice.name, needed),
            ExpectedNames(needed, technique.brdfs));
+    }
+  }
+
+  void CheckNeededShape(const Technique& technique, const Choice& choice, const std::string& needed,
+                        int line) const {
+    std::vector<std::string> names;
+    for (const LightShape shape : technique.shapes) names.emplace_back(Name(shape));
+    if (std::find(names.begin(), names.end(), needed) == names.end()) {
+      Fail(line, fmt::format("choice \"{}\" needs unknown shape \"{}\"", choice.name, needed),
+           ExpectedNames(needed, names));
     }
   }
 

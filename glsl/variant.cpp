@@ -201,7 +201,7 @@ std::optional<std::string> WhyInconsistent(const Variant& variant) {
   for (const Option& option : variant.technique->options) {
     const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
     for (const auto& [other, needed] : choice->needs) {
-      if (other == "brdf") continue;  // a scene's matter
+      if (other == "brdf" || other == "shape") continue;  // a scene's matter
       if (const std::string& chosen = variant.options.at(other); chosen != needed) {
         return fmt::format("{}={} does not go with {}={}; expected +{}={}", option.name, choice->name, other,
                            chosen, other, needed);
@@ -234,6 +234,16 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
         light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light \"{}\"", light.name);
     return fmt::format("{} shades {}; {} is a {}", variant.technique->name, ShapeList(shapes), who,
                        Name(light.shape));
+  }
+  for (const Option& option : variant.technique->options) {
+    const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
+    const auto needed = choice->needs.find("shape");
+    if (needed == choice->needs.end()) continue;
+    for (const Light& light : scene.lights) {
+      if (needed->second == Name(light.shape)) continue;
+      return fmt::format("{} with {}={} goes with {}s alone; the scene has a {}", variant.technique->name,
+                         option.name, choice->name, needed->second, Name(light.shape));
+    }
   }
   const Technique& technique = *variant.technique;
   for (const auto& [define, on] : SceneEffects(scene)) {

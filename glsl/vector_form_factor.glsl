@@ -80,10 +80,3 @@ VectorFormFactor LambertVector(RectangleView view) {
   result.height = dot(view.horizon, result.f);
   return result;
 }
-
-// Of the proxy sphere that has the same F, clipped at the horizon; ClippedSphere is the option "sphere".
-float ClippedProxy(VectorFormFactor f) {
-  float size = min(f.size, 1.0);
-  float elevation = clamp(f.height * f.inverse, -1.0, 1.0);
-  return AsFormFactor(ClippedSphere(size, elevation));
-}

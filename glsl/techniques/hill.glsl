@@ -107,7 +107,7 @@ fresnel = "lobe"
 #include "fresnel"
 #include "edge"
 #include "sphere"
-#include "vector_form_factor.glsl"
+#include "clipped_proxy.glsl"
 #include "disk"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {

@@ -43,7 +43,6 @@ edge = "acos"
 #include "edge"
 #include "clip"
 #include "specular_lobe.glsl"
-#include "sphere/fit.glsl"  // for the proxy sphere in the next, not used here
 #include "vector_form_factor.glsl"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {

@@ -85,7 +85,7 @@ name = "horizon"
 summary = "Which horizon clips the specular lobe"
 choices = [
   ["lobe", "the transformed lobe's own"],
-  ["true", "the surface's too, both streamed, with tables fitted for it; disks and spheres at the lobe's alone", { fit = "polygon", lobes = "one", frame = "mirror", brdf = "ggx" }],
+  ["true", "the surface's too, both streamed, with tables fitted for it", { fit = "polygon", lobes = "one", frame = "mirror", brdf = "ggx", shape = "rectangle" }],
 ]
 
 [[option]]

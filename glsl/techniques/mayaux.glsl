@@ -45,7 +45,6 @@ coupling = "none"
 #include "representative_point.glsl"
 #include "solid_angle.glsl"
 #include "specular_albedo.glsl"
-#include "sphere/fit.glsl"  // for the proxy sphere in the next, not used here
 #include "vector_form_factor.glsl"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {

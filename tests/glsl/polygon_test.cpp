@@ -24,14 +24,14 @@ namespace none {
 }
 namespace proxy {
 #include "glsl/sphere/exact.glsl"
-#include "glsl/vector_form_factor.glsl"
+#include "glsl/clipped_proxy.glsl"
 }  // namespace proxy
 namespace cheap {
 #include "glsl/sphere/cheap.glsl"
 }
 namespace fitted {
 #include "glsl/sphere/fit.glsl"
-#include "glsl/vector_form_factor.glsl"
+#include "glsl/clipped_proxy.glsl"
 }  // namespace fitted
 }  // namespace half_angle
 namespace mirrored {
@@ -44,7 +44,7 @@ namespace switched {
 }
 namespace proxy {
 #include "glsl/sphere/exact.glsl"
-#include "glsl/vector_form_factor.glsl"
+#include "glsl/clipped_proxy.glsl"
 }  // namespace proxy
 }  // namespace mirrored
 namespace rational {
@@ -105,7 +105,7 @@ namespace stream {
 }
 namespace proxy {
 #include "glsl/sphere/exact.glsl"
-#include "glsl/vector_form_factor.glsl"
+#include "glsl/clipped_proxy.glsl"
 }  // namespace proxy
 }  // namespace exact
 #include "glsl/dual_end.h"

@@ -259,6 +259,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "7: unknown name \"lambert\" in brdfs; expected ggx, ggx_separable, beckmann, blinn_phong, ward, phong"},
         WrongHeader{"[\"down\", \"downwards\"]", "[\"down\", \"downwards\", { brdf = \"ward\" }]",
                     "14: choice \"down\" needs unknown brdf \"ward\"; expected ggx"},
+        WrongHeader{"[\"down\", \"downwards\"]", "[\"down\", \"downwards\", { shape = \"disk\" }]",
+                    "14: choice \"down\" needs unknown shape \"disk\"; expected rectangle, sphere"},
         WrongHeader{"[\"two_sided\"]", "[\"shiny\"]",
                     "8: unknown name \"shiny\" in effects; expected rectangle"},
         WrongHeader{"[\"lambert_sphere\"]", "[\"all\"]",

@@ -168,6 +168,18 @@ TEST(Variant, UnsupportedShapesAreNamedInASentence) {
   EXPECT_EQ(WhyUnsupported(Parse("plain"), SceneWith(LightShape::kSphere, "lamp")), std::nullopt);
 }
 
+TEST(Variant, ChoicesForOneShapeRefuseOthers) {
+  std::vector<Technique> techniques = Techniques();
+  Technique& plain = *std::ranges::find(techniques, "plain", &Technique::name);
+  plain.options = {{"horizon", "which", {{"lobe", "its own"}, {"true", "both", {{"shape", "rectangle"}}}}}};
+  const Variant both = ParseVariant(techniques, "plain+horizon=true");
+  EXPECT_EQ(WhyInconsistent(both), std::nullopt);
+  EXPECT_EQ(WhyUnsupported(both, SceneWith(LightShape::kRectangle, "lamp")), std::nullopt);
+  EXPECT_EQ(WhyUnsupported(both, SceneWith(LightShape::kDisk, "lamp")),
+            "plain with horizon=true goes with rectangles alone; the scene has a disk");
+  EXPECT_EQ(WhyUnsupported(DefaultVariant(plain), SceneWith(LightShape::kDisk, "lamp")), std::nullopt);
+}
+
 TEST(Variant, UnsupportedEffectsAreNamedInASentence) {
   Scene scene = SceneWith(LightShape::kRectangle, "lamp");
   scene.lights[0].two_sided = true;

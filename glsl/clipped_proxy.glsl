@@ -1,0 +1,10 @@
+// A rectangle clipped at the horizon as the sphere of the same vector form factor [Hill & Heitz 2016]. Dual; after an "edge"
+// and a "sphere".
+#include "vector_form_factor.glsl"
+
+// Of the proxy sphere that has the same F, clipped at the horizon; ClippedSphere is the option "sphere".
+float ClippedProxy(VectorFormFactor f) {
+  float size = min(f.size, 1.0);
+  float elevation = clamp(f.height * f.inverse, -1.0, 1.0);
+  return AsFormFactor(ClippedSphere(size, elevation));
+}
