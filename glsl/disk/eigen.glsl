@@ -1,8 +1,8 @@
 // Disks and spheres by the axes of their cone, the eigenvectors of a 3×3 matrix [Heitz & Hill 2017], clipped as the sphere of the same
 // form factor. Dual; after ltc.glsl and a "sphere".
 //
-// As published, without guards: where two eigenvalues are nearly equal the discriminant of their cubic is rounding and its root may be
-// no number, as for a point on the disk's axis, in its plane or at its centre.
+// As published, without guards: in the light's plane, and where two eigenvalues are nearly equal and the discriminant of their cubic is
+// rounding, the result may be no number.
 #include "light_cone.glsl"
 
 // One of the two outer roots of Aλ³ + 3Bλ² + 3Cλ + D [Blinn 2006, "How to Solve a Cubic Equation", algorithms A and D]:

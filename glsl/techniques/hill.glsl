@@ -35,7 +35,7 @@ name = "disk"
 summary = "Disks and spheres"
 choices = [
   ["cone", "the vector form factor of their cone of directions by one root"],
-  ["eigen", "the cone's axes by a cubic, no guard where two axes are equal: can give no number"],
+  ["eigen", "the cone's axes by a cubic, unguarded as published: in the light's plane it is no number"],
 ]
 
 [[option]]

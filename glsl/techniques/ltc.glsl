@@ -35,7 +35,7 @@ name = "disk"
 summary = "Disks and spheres"
 choices = [
   ["exact", "the cone of their directions by one root, clipped exactly"],
-  ["proxy", "the cone's axes by a cubic, the proxy sphere from a table, no guard where two axes are equal: can give no number"],
+  ["proxy", "the cone's axes by a cubic, the proxy sphere from a table, unguarded as published: in the light's plane it is no number"],
 ]
 
 [[option]]
