@@ -30,6 +30,8 @@ struct DiskView {
   vec3 half_b;  // m, perpendicular to half_a
   vec3 normal;  // unit
   vec3 place;   // center = place.x · half_a + place.y · half_b + place.z · normal
+  vec3 horizon;    // the shading normal along the disk's axes and normal
+  vec2 half_size;  // m, |half_a| and |half_b|
 };
 
 // position: m, world; the frame is that of the surface.
@@ -41,7 +43,19 @@ DiskView ViewDisk(Light light, vec3 position, ShadingFrame frame) {
   disk.half_b = view.half_b;
   disk.normal = vec3(dot(frame.tangent, light.normal), dot(frame.bitangent, light.normal), view.horizon.z);
   disk.place = vec3(view.in_plane.x / view.half_size.x, view.in_plane.y / view.half_size.y, view.in_plane.z);
+  disk.horizon = view.horizon;
+  disk.half_size = view.half_size;
   return disk;
+}
+
+// The disk in its own axes, where most products are none.
+DiskView InOwnAxes(DiskView disk) {
+  DiskView own = disk;
+  own.half_a = vec3(disk.half_size.x, 0.0, 0.0);
+  own.half_b = vec3(0.0, disk.half_size.y, 0.0);
+  own.normal = vec3(0.0, 0.0, 1.0);
+  own.center = vec3(disk.place.x * disk.half_size.x, disk.place.y * disk.half_size.y, disk.place.z);
+  return own;
 }
 
 // A sphere as a shaded point sees it, in the shading frame.

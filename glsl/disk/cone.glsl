@@ -9,7 +9,10 @@ vec3 ProxyOfCone(LightCone cone) {
 }
 
 // The form factor of the light itself; a sphere is its own proxy.
-float LambertDisk(DiskView disk) { return ProxyOfCone(ConeOfDisk(vec4(1.0, 0.0, 0.0, 1.0), disk)).z; }
+float LambertDisk(DiskView disk) {
+  ConeVector whole = VectorOfCone(ConeOfDisk(vec4(1.0, 0.0, 0.0, 1.0), InOwnAxes(disk)));
+  return AsFormFactor(ClippedSphere(whole.size, dot(whole.axis, disk.horizon)));
+}
 float LambertSphere(SphereView sphere) { return AsFormFactor(ClippedSphere(sphere.sin2, sphere.direction.z)); }
 
 // The vector form factor of the light transformed by M⁻¹ = m.

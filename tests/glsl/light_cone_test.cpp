@@ -107,11 +107,8 @@ dvec3 TransformedContour(const dvec4& m, const dvec3& center, const dvec3& a, co
 // Facing the origin.
 DiskView MakeDisk(const dvec3& center, const dvec3& axis_x, const dvec3& normal, double a, double b) {
   const dvec3 axis_y = glm::cross(normal, axis_x);
-  return {center,
-          a * axis_x,
-          b * axis_y,
-          normal,
-          {glm::dot(center, axis_x) / a, glm::dot(center, axis_y) / b, glm::dot(center, normal)}};
+  const dvec3 place(glm::dot(center, axis_x) / a, glm::dot(center, axis_y) / b, glm::dot(center, normal));
+  return {center, a * axis_x, b * axis_y, normal, place, {axis_x.z, axis_y.z, normal.z}, {a, b}};
 }
 
 const std::array<std::string, 10> kPlaces{"ordinary", "near", "far",  "grazing", "edge-on",
@@ -176,6 +173,20 @@ TEST(LightCone, ClippedSphereIsTheContourIntegralOfItsRim) {
   EXPECT_LT(worst, 4e-5);
   EXPECT_LT(worst_vector, 4e-5);
   EXPECT_LT(worst_lambert, 1e-7);
+}
+
+// The light's own axes change nothing.
+TEST(LightCone, LambertIsTheRoundLobe) {
+  Random random;
+  for (const std::string& place : kPlaces) {
+    for (int i = 0; i < 300; ++i) {
+      const DiskView disk = RandomDisk(random, place);
+      ASSERT_NEAR(dual::closed::cone::LambertDisk(disk), dual::closed::cone::LobeOfDisk(kIdentity, disk).z,
+                  1e-9)
+          << place;
+      ASSERT_EQ(dual::clipped::LambertDisk(disk), dual::clipped::LobeOfDisk(kIdentity, disk).z) << place;
+    }
+  }
 }
 
 // Both forms have the same proxy sphere, since both have the exact |F| and direction; ours without a number
