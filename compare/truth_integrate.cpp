@@ -137,8 +137,8 @@ AREALAB_INLINE void SumRays(Batch& batch, const RayRule& rule, const OverGgx& ov
         double r = origin[i] + scale[i] * p;
         double slope2 = center2 + r * (2.0 * along_center[i] + r);
         dual::SlopeLight light = dual::LightAtSlope(view, center_x + r * direction_x[i], slope2);
-        dual::vec2 f = dual::LobeWeights(
-            light, over_ggx(view.cos_v, light.n_dot_l, light.v_dot_h, slope2, view.alpha));
+        dual::vec2 f =
+            dual::LobeWeights(light, over_ggx(view.cos_v, light.n_dot_l, light.v_dot_h, slope2, view.alpha));
         double tail = alpha2 + slope2;
         double measure = w * derivative * r / (tail * tail);
         sum[i] += measure * f.x;
@@ -660,13 +660,13 @@ constexpr double kRounding = 1e-12;  // of the sum of absolute terms
 // 1e-3 and 1e-4 were exceeded in 0.03 and 0.04 % of the 20 000 first of tests/compare/hard_configurations.h,
 // against the finest level but one. Where terms cancel, agreement by chance is likelier.
 constexpr double kShare = 0.5, kCautiousShare = 0.1, kMuchCancels = 3.0;
-// What is stated is this times the difference of the last two levels. Steep lobes converge late and then at once: their first
-// levels agree by chance (with the others' settings 4 of the 20 steep cases of tests/compare/truth_independent_test.cpp had a point
-// whose error was up to 5 times the stated one).
+// What is stated is this times the difference of the last two levels. Steep lobes converge late and then at
+// once: their first levels agree by chance (with the others' settings 4 of the 20 steep cases of
+// tests/compare/truth_independent_test.cpp had a point whose error was up to 5 times the stated one).
 constexpr double kSpread = 2.0, kSteepSpread = 4.0;
 constexpr std::size_t kSteepFirst = 3;
-// Of a steep lobe's tail: less than this is nothing beside what the light's other lobes and pixels give (the peak gives
-// about 1), and nobody asks for its digits.
+// Of a steep lobe's tail: less than this is nothing beside what the light's other lobes and pixels give (the
+// peak gives about 1), and nobody asks for its digits.
 constexpr double kSteepNothing = 1e-9;
 // A difference can be small by chance: no error below this share of the tolerance is stated.
 constexpr double kLeastStated = 0.25;

@@ -22,15 +22,15 @@ namespace phong {
 }
 // clang-format on
 
-// Calls function(over_ggx), over_ggx being the choice's BrdfOverGgx as an object of a type of its own, so that a loop over it
-// is compiled for each BRDF.
+// Calls function(over_ggx), over_ggx being the choice's BrdfOverGgx as an object of a type of its own, so
+// that a loop over it is compiled for each BRDF.
 template <typename Function>
 auto WithBrdf(Brdf brdf, const Function& function) {
   using Number = float;
-#define AREALAB_CALL(name)                                                                               \
-  return function([](Number n_dot_v, Number n_dot_l, Number v_dot_h, Number tan2_h, Number alpha)        \
-                      __attribute__((always_inline)) {                                                   \
-                        return name::BrdfOverGgx(n_dot_v, n_dot_l, v_dot_h, tan2_h, alpha);              \
+#define AREALAB_CALL(name)                                                                        \
+  return function([](Number n_dot_v, Number n_dot_l, Number v_dot_h, Number tan2_h, Number alpha) \
+                      __attribute__((always_inline)) {                                            \
+                        return name::BrdfOverGgx(n_dot_v, n_dot_l, v_dot_h, tan2_h, alpha);       \
                       })
   switch (brdf) {
     case Brdf::kGgx:
@@ -52,5 +52,6 @@ auto WithBrdf(Brdf brdf, const Function& function) {
 
 // The BRDF over GgxDensity at one place.
 float BrdfOverGgx(Brdf brdf, float n_dot_v, float n_dot_l, float v_dot_h, float tan2_h, float alpha) {
-  return WithBrdf(brdf, [&](const auto& over_ggx) { return over_ggx(n_dot_v, n_dot_l, v_dot_h, tan2_h, alpha); });
+  return WithBrdf(brdf,
+                  [&](const auto& over_ggx) { return over_ggx(n_dot_v, n_dot_l, v_dot_h, tan2_h, alpha); });
 }

@@ -12,8 +12,8 @@ exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle",
 name = "level"
 summary = "Nodes along each part of the outline and along each ray from the lobe's centre"
 choices = [
-  ["normal", "8 and 6: about 1e-3"],
-  ["dense", "16 and 12: what float can hold"],
+  ["normal", "8 and 6: about 1e-3 for GGX, up to 4e-2 for a sharp lobe with a steeper tail"],
+  ["dense", "16 and 12: what float can hold, 1e-3 for a sharp lobe with a steeper tail"],
 ]
 ---*/
 #include "gauss_nodes.glsl"

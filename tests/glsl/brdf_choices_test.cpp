@@ -1,5 +1,5 @@
-// Every choice of a scene's BRDF: the shader's text in double against each source's own form, its symmetry, its sign and its
-// stated normalisation.
+// Every choice of a scene's BRDF: the shader's text in double against each source's own form, its symmetry,
+// its sign and its stated normalisation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,8 +42,8 @@ double Albedo(Brdf brdf, double cos_v, double alpha) {
       const double v_dot_h = glm::dot(v, h);
       const dvec3 l = 2.0 * v_dot_h * h - v;
       if (v_dot_h <= 0.0 || l.z <= 0.0) continue;
-      const double f = dual::GgxDensity(cos_h, alpha) *
-                       dual::BrdfOverGgx(brdf, cos_v, l.z, v_dot_h, slope * slope, alpha);
+      const double f =
+          dual::GgxDensity(cos_h, alpha) * dual::BrdfOverGgx(brdf, cos_v, l.z, v_dot_h, slope * slope, alpha);
       sum += f * l.z * 4.0 * v_dot_h * sin_h * cos_h * cos_h * d_slope * 2.0 * kPi / kSteps;
     }
   }
@@ -70,7 +70,8 @@ TEST_P(EachBrdf, IsReciprocalAndNeitherNegativeNorInfinite) {
   }
 }
 
-// What is reflected of an even sky is at most all, but for Blinn-Phong, whose factor is a fit (checked below).
+// What is reflected of an even sky is at most all, but for Blinn-Phong, whose factor is a fit (checked
+// below).
 TEST_P(EachBrdf, ReflectsAtMostAll) {
   for (const double alpha : {0.05, 0.25, 1.0})
     for (const double cos_v : {1.0, 0.5, 0.1}) {
@@ -92,21 +93,23 @@ TEST(BrdfChoices, BeckmannsDensityProjectsToOne) {
       const double cos_h = 1.0 / std::sqrt(1.0 + slope * slope);
       const double density = dual::GgxDensity(cos_h, alpha) * dual::GaussOverGgx(slope * slope, alpha);
       // cosθ dω = cos⁴θ · slope d(slope) dφ.
-      sum += density * std::pow(cos_h, 4) * slope * 2.0 * kPi * alpha / (std::cos(chi) * std::cos(chi)) * 0.5 * kPi / kSteps;
+      sum += density * std::pow(cos_h, 4) * slope * 2.0 * kPi * alpha / (std::cos(chi) * std::cos(chi)) *
+             0.5 * kPi / kSteps;
     }
     EXPECT_NEAR(sum, 1.0, 1e-6) << alpha;
   }
 }
 
-// The ratio of the highest to GGX's of the same alpha at the mirror direction, straight on: D(0) is the same for
-// GGX, Beckmann and Ward, and all have masking 1 there.
+// The ratio of the highest to GGX's of the same alpha at the mirror direction, straight on: D(0) is the same
+// for GGX, Beckmann and Ward, and all have masking 1 there.
 TEST(BrdfChoices, PeaksStraightOn) {
   for (const double alpha : {1e-4, 0.01, 0.25}) {
     const double ggx = dual::BrdfOverGgx(Brdf::kGgx, 1.0, 1.0, 1.0, 0.0, alpha);
     EXPECT_EQ(ggx, 0.25);
     for (const Brdf brdf : {Brdf::kGgxSeparable, Brdf::kBeckmann, Brdf::kWard})
       EXPECT_NEAR(dual::BrdfOverGgx(brdf, 1.0, 1.0, 1.0, 0.0, alpha), 0.25, 1e-15) << Name(brdf);
-    EXPECT_NEAR(dual::BrdfOverGgx(Brdf::kBlinnPhong, 1.0, 1.0, 1.0, 0.0, alpha), 0.25 + 0.75 * alpha * alpha, 1e-15);
+    EXPECT_NEAR(dual::BrdfOverGgx(Brdf::kBlinnPhong, 1.0, 1.0, 1.0, 0.0, alpha), 0.25 + 0.75 * alpha * alpha,
+                1e-15);
     EXPECT_NEAR(dual::BrdfOverGgx(Brdf::kPhong, 1.0, 1.0, 1.0, 0.0, alpha), 0.25 + alpha * alpha, 1e-15);
   }
 }
@@ -131,7 +134,8 @@ TEST(BrdfChoices, SeparableMaskingIsTheProduct) {
     for (const double v : {0.01, 0.4, 1.0})
       for (const double l : {0.02, 0.7}) {
         const double expected = dual::SmithG1(v, alpha) * dual::SmithG1(l, alpha) / (4.0 * v * l);
-        EXPECT_NEAR(dual::BrdfOverGgx(Brdf::kGgxSeparable, v, l, 0.5, 0.0, alpha), expected, 1e-12 * expected);
+        EXPECT_NEAR(dual::BrdfOverGgx(Brdf::kGgxSeparable, v, l, 0.5, 0.0, alpha), expected,
+                    1e-12 * expected);
       }
 }
 
@@ -158,8 +162,8 @@ TEST(BrdfChoices, PhongIsTheNormalisedForm) {
   }
 }
 
-// The limit of a mirror: masked lobes and Ward's reflect all; Blinn-Phong without masking (n·v)², Phong's lobe, which has a
-// solid angle of its own and is not divided by n·v, the cosine once.
+// The limit of a mirror: masked lobes and Ward's reflect all; Blinn-Phong without masking (n·v)², Phong's
+// lobe, which has a solid angle of its own and is not divided by n·v, the cosine once.
 TEST(BrdfChoices, AlbedoOfASharpLobe) {
   constexpr double kAlpha = 0.01;
   for (const double c : {1.0, 0.6}) {
