@@ -51,8 +51,12 @@ std::vector<Variant> ChosenVariants(const CompareArguments& arguments, const std
     throw InputError("--all-variants and --technique exclude each other; expected one of them");
   }
   if (arguments.all_variants) return AllVariants(techniques);
-  if (arguments.techniques.empty()) return DefaultVariants(techniques);
   std::vector<Variant> variants;
+  if (arguments.techniques.empty()) {
+    variants = DefaultVariants(techniques);
+    std::erase_if(variants, [](const Variant& variant) { return variant.technique->yardstick; });
+    return variants;
+  }
   for (const std::string& name : arguments.techniques) {
     const Variant variant = ParseVariant(techniques, name);
     if (std::find(variants.begin(), variants.end(), variant) == variants.end()) variants.push_back(variant);

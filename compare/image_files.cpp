@@ -195,6 +195,19 @@ RadianceImage FromHalf(const HalfImage& image) {
   return result;
 }
 
+void DropBits(HalfImage& image, int bits) {
+  constexpr unsigned kSign = 0x8000, kLargest = 0x7bff, kInfinity = 0x7c00, kNan = 0x7e00;
+  const unsigned step = 1u << bits;
+  for (auto& plane : image.planes) {
+    for (std::uint16_t& value : plane) {
+      const unsigned size = value & ~kSign & 0xffffu;
+      unsigned kept = std::min((size + step / 2) / step, kLargest / step) * step;
+      if (size >= kInfinity) kept = size == kInfinity ? kInfinity : kNan;
+      value = static_cast<std::uint16_t>(kept == 0 ? 0u : (value & kSign) | kept);
+    }
+  }
+}
+
 void WriteExr(const std::filesystem::path& file, const HalfImage& image) {
   std::vector<int> planes;
   std::vector<std::string> names;

@@ -37,6 +37,10 @@ HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceI
                  const HalfImage& stored);
 RadianceImage FromHalf(const HalfImage& image);
 
+// Keeps every value to a multiple of 2^bits units in its last place (of ten bits), bits from 0 to 9: a relative
+// step of at most 2^(bits − 10). NaN and infinity stay what they are.
+void DropBits(HalfImage& image, int bits);
+
 // Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray), half where the exponent is 0,
 // else float with exactly the same values; lossless. Throws InputError where the file cannot be written.
 void WriteExr(const std::filesystem::path& file, const HalfImage& image);

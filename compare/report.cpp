@@ -137,11 +137,10 @@ struct Rounding {
   HalfImage truth;
 };
 
-// Half floats are finer in the dark than any map shows: below 1/8 of the truth's mean luminance m their step
-// at m/8 is kept, an error of at most 2⁻¹⁴ m. Where the truth alone would still take more than 1.4 bytes a
-// pixel on the page (fine texture all over) the step is doubled until it does not, at most to 2⁻⁸ m: a folder
-// of ten scenes and ten variants at 512×512 stays below 60 MB.
-constexpr double kCoarseBelow = 1.0 / 8.0, kCoarsest = 4.0, kBytesPerPixel = 1.4;
+// Half floats are finer in the dark than any map shows: below a quarter of the truth's mean luminance m their
+// step at m/4 is kept, an error of at most 2⁻¹³ m. Where the truth alone would still take more than 0.9 bytes
+// a pixel on the page (fine texture all over) the step is doubled until it does not, at most to 2⁻⁸ m.
+constexpr double kCoarseBelow = 1.0 / 4.0, kCoarsest = 4.0, kBytesPerPixel = 0.9;
 constexpr double kSmallFile = 65536.0;  // bytes; never worth it
 
 Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
@@ -163,7 +162,54 @@ struct Job {
   std::shared_ptr<const RadianceImage> image;
   std::string folder, stem;
   bool emission_only = false, shadowed = false;
+  const VariantResult* variant = nullptr;  // whose picture it is, if any's
 };
+
+// What is far off needs fewer digits: a variant's values are kept to at most 1/8 of its own relative RMSE,
+// which moves them by a thirtieth of that (uniform: step/√12), and at most to 2⁻⁶ of their size, where
+// banding would show.
+int DroppedBits(const VariantResult& variant) {
+  const double error = variant.total.rel_rmse;
+  if (!(error > 0.0)) return 0;
+  return static_cast<int>(std::clamp(std::floor(std::log2(error / 8.0 * 1024.0)), 0.0, 4.0));
+}
+
+// What the folder may take at 512×512; where it would take more, every variant's values lose one bit more, or
+// two.
+constexpr double kMostBytes = 57e6;
+constexpr int kMostExtraBits = 2;
+constexpr std::size_t kSampleStride = 4;
+
+double BytesIn(const fs::path& folder) {
+  double bytes = 0.0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+  }
+  return bytes;
+}
+
+constexpr int kThumbnailSide = 256;  // pixels at most: twice what the page gives it
+
+// The picture averaged over squares of pixels until its width is a thumbnail's.
+void WriteThumbnail(const fs::path& file, const std::vector<glm::vec3>& picture, int width, double exposure) {
+  const int block = std::max(1, (width + kThumbnailSide - 1) / kThumbnailSide);
+  const int height = static_cast<int>(picture.size()) / width;
+  const int columns = width / block, rows = std::max(1, height / block);
+  std::vector<glm::vec3> small;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      glm::vec3 sum(0.0f);
+      int count = 0;
+      for (int y = row * block; y < std::min((row + 1) * block, height); ++y) {
+        for (int x = column * block; x < (column + 1) * block; ++x, ++count) {
+          sum += picture[static_cast<std::size_t>(y * width + x)];
+        }
+      }
+      small.push_back(sum / static_cast<float>(count));
+    }
+  }
+  WritePng(file, small, columns, exposure);
+}
 
 // Steps of sixteen in half bits between the shadowed truth and the unshadowed one: at most eight bits' error,
 // 0.4 to 0.8 %, below the shadowed truth's own, and half of the bytes.
@@ -173,12 +219,13 @@ void Coarsen(HalfImage& shadowed, const HalfImage& truth) {
     for (std::size_t i = 0; i < shadowed.planes[plane].size(); ++i) {
       std::uint16_t& value = shadowed.planes[plane][i];
       const int base = truth.planes[plane][i], lost = base - value;
-      if (value != 0 && lost > 0) value = static_cast<std::uint16_t>(std::max(base - (lost + 8) / 16 * 16, 0));
+      if (value != 0 && lost > 0)
+        value = static_cast<std::uint16_t>(std::max(base - (lost + 8) / 16 * 16, 0));
     }
   }
 }
 
-void WriteImages(const Job& job, const fs::path& root) {
+void WriteImages(const Job& job, int extra_bits, const fs::path& root) {
   const SceneResult& scene = *job.scene;
   const Rounding& rounding = *job.rounding;
   const std::string key = job.folder + "/" + job.stem;
@@ -194,6 +241,7 @@ void WriteImages(const Job& job, const fs::path& root) {
   } else if (scene.truth) {
     half = ToHalf(*job.image, rounding.coarse_below, *scene.truth, rounding.truth);
     if (job.shadowed) Coarsen(half, rounding.truth);
+    if (job.variant) DropBits(half, DroppedBits(*job.variant) + extra_bits);
     WriteText(script, EncodePageImage(key, half, &rounding.truth));
   } else {
     half = ToHalf(*job.image);
@@ -203,7 +251,8 @@ void WriteImages(const Job& job, const fs::path& root) {
   WriteExr(images / (job.stem + ".exr"), half);
   const std::span<const glm::vec3> emission =
       scene.emission ? std::span<const glm::vec3>(*scene.emission) : std::span<const glm::vec3>();
-  WritePng(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width, scene.exposure);
+  WriteThumbnail(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width,
+                 scene.exposure);
 }
 
 // The luminance below which a relative difference is taken relative to this instead: 1 % of the truth's mean
@@ -318,7 +367,9 @@ void WriteReport(const Results& results, const fs::path& directory,
       const VariantResult& variant = scene.variants[v];
       const std::string stem = FileName(variant.name, &stems);
       scene_json["variants"][v]["stem"] = variant.image ? Json(stem) : Json(nullptr);
-      if (variant.image) jobs.push_back({&scene, &roundings[s], variant.image, folder, stem});
+      if (variant.image) {
+        jobs.push_back({&scene, &roundings[s], variant.image, folder, stem, false, false, &variant});
+      }
     }
     scene_json["emission"] = scene.emission != nullptr;
     if (scene.emission) {
@@ -346,12 +397,26 @@ void WriteReport(const Results& results, const fs::path& directory,
 
   std::mutex mutex;
   std::size_t done = 0;
-  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
-    WriteImages(jobs[i], partial.path());
-    const std::lock_guard lock(mutex);
-    ++done;
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(jobs.size()));
-  });
+  double most_bytes = 0.0;
+  for (const SceneResult& scene : results.scenes) {
+    most_bytes = std::max(most_bytes, kMostBytes * scene.width * scene.height / (512.0 * 512.0));
+  }
+  // Every fourth picture tells how many bits to spare before all are written.
+  const auto write = [&](std::size_t stride, int extra_bits) {
+    tbb::parallel_for(std::size_t{0}, (jobs.size() + stride - 1) / stride, [&](std::size_t i) {
+      WriteImages(jobs[stride * i], extra_bits, partial.path());
+      const std::lock_guard lock(mutex);
+      ++done;
+      if (progress && stride == 1) progress(static_cast<double>(done) / static_cast<double>(jobs.size()));
+    });
+  };
+  int extra_bits = 0;
+  for (; extra_bits < kMostExtraBits; ++extra_bits) {
+    write(kSampleStride, extra_bits);
+    if (static_cast<double>(kSampleStride) * BytesIn(partial.path()) <= most_bytes) break;
+  }
+  done = 0;
+  write(1, extra_bits);
 
   WriteText(partial.path() / "results.json", ResultsJson(results));
   WriteText(partial.path() / "results.csv", ResultsCsv(results));

@@ -89,7 +89,7 @@ class HeaderReader {
     }
     toml::table root = Parse(CutHeader(text));
     CheckKeys(root, {"summary", "citation", "author_note", "shapes", "lobes", "brdfs", "effects", "exact",
-                     "option", "knob", "tables", "published"});
+                     "yardstick", "option", "knob", "tables", "published"});
     technique.summary = Line(root, "summary", 1);
     technique.citation = Line(root, "citation", 1);
     technique.author_note = Line(root, "author_note", 1);
@@ -246,6 +246,10 @@ class HeaderReader {
     technique.brdfs = NeededList(root, "brdfs", BrdfNames());
     technique.effects = NameList(root, "effects", KnownEffects());
     technique.exact = NameList(root, "exact", kClaims);
+    if (const toml::node* yardstick = root.get("yardstick")) {
+      if (!yardstick->is_boolean()) Fail(LineOf(*yardstick), "yardstick is neither true nor false", "one of them");
+      technique.yardstick = yardstick->as_boolean()->get();
+    }
   }
 
   // The tables of `[[key]]`.

@@ -49,6 +49,7 @@ struct Technique {
   std::vector<LightShape> shapes;
   bool diffuse = true;  // lobes it shades
   bool specular = true;
+  bool yardstick = false;  // what a user would otherwise do: compared only where asked for
   std::vector<std::string> brdfs;    // "ggx"
   std::vector<std::string> effects;  // EFFECT_* it takes: "two_sided", "fresnel", …
   std::vector<std::string>

@@ -138,12 +138,12 @@ async function decode(key, header, data) {
   const truth = header.planes.some((mode) => mode[1] === "t") ? await load(key.split("/")[0], "truth") : null;
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
-  const { width, height, exponent } = header, size = width * height, planes = [];
+  const { width, height, exponent, shift } = header, size = width * height, planes = [];
   let at = 0;
   for (let lobe = 0; lobe < 2; ++lobe) {
     for (const channel of [1, 0, 2]) {
       const mode = header.planes[3 * lobe + channel], green = planes[3 * lobe + 1];
-      const base = mode[1] === "g" ? green : mode[1] === "t" ? truth.planes[3 * lobe + channel] : null;
+      const base = mode[1] === "g" ? green : mode[1] === "t" ? truth.planes[3 * lobe + channel].map((v) => v >>> shift) : null;
       if (mode[0] === "=") { planes[3 * lobe + channel] = base; continue; }
       const plane = new Uint16Array(size);
       for (let i = 0, y = 0; y < height; ++y) {
@@ -158,7 +158,7 @@ async function decode(key, header, data) {
       planes[3 * lobe + channel] = plane;
     }
   }
-  return { width, height, planes, scale: 2 ** exponent };
+  return { width, height, planes: planes.map((plane) => shift ? plane.map((v) => v << shift) : plane), scale: 2 ** exponent };
 }
 
 function load(folder, stem) {
@@ -1063,7 +1063,7 @@ const TERMS = [
   ["Published and default", "name@published is the form its author published; the plain name is the best form we know. Both are shown, so that nobody is judged by our changes or robbed of theirs."],
   ["Emitters", "Lights seen directly are added to the pictures and are part of no metric and no map. Techniques cast no shadows, and neither does the truth they are ranked against."],
   ["Truth, shadowed", "What the lights do past the scene's surfaces, by rays: the unshadowed integrals times the visible share. Lights hide nothing themselves. It stands beside truth as a picture like any other, in no ranking; the missing shadow is its own map."],
-  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is the picture at the scene's exposure. To keep the folder small, values below an eighth of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; every metric was computed from the full floats. Shadowed truth is kept to 0.8 %, less than its own error."],
+  ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is a small picture at the scene's exposure. To keep the folder small, values below a quarter of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; a variant's values are kept to an eighth of its own relative RMSE, at most in steps of 1.6 % (of 0.1 % at least; where the folder would pass 57 MB, one or two powers of two coarser); every metric was computed from the full floats. Shadowed truth is kept to 0.8 %, less than its own error."],
 ];
 
 function buildGlossary() {

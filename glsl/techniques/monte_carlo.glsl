@@ -5,6 +5,7 @@ author_note = "Nobody's published form: what a user would otherwise do. Half of 
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
+yardstick = true
 effects = ["two_sided", "fresnel", "many_lights"]
 
 [[option]]
