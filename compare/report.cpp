@@ -178,7 +178,7 @@ int DroppedBits(const VariantResult& variant) {
 // two.
 constexpr double kMostBytes = 57e6;
 constexpr int kMostExtraBits = 2;
-constexpr std::size_t kSampleStride = 4;
+constexpr std::size_t kSampleStride = 12;
 
 double BytesIn(const fs::path& folder) {
   double bytes = 0.0;
@@ -401,7 +401,7 @@ void WriteReport(const Results& results, const fs::path& directory,
   for (const SceneResult& scene : results.scenes) {
     most_bytes = std::max(most_bytes, kMostBytes * scene.width * scene.height / (512.0 * 512.0));
   }
-  // Every fourth picture tells how many bits to spare before all are written.
+  // Every twelfth picture tells how many bits to spare before all are written.
   const auto write = [&](std::size_t stride, int extra_bits) {
     tbb::parallel_for(std::size_t{0}, (jobs.size() + stride - 1) / stride, [&](std::size_t i) {
       WriteImages(jobs[stride * i], extra_bits, partial.path());
