@@ -140,7 +140,7 @@ struct Rounding {
 // Half floats are finer in the dark than any map shows: below a quarter of the truth's mean luminance m their
 // step at m/4 is kept, an error of at most 2⁻¹³ m. Where the truth alone would still take more than 0.9 bytes
 // a pixel on the page (fine texture all over) the step is doubled until it does not, at most to 2⁻⁸ m.
-constexpr double kCoarseBelow = 1.0 / 4.0, kCoarsest = 4.0, kBytesPerPixel = 0.9;
+constexpr double kCoarseBelow = 1.0 / 4.0, kCoarsest = 4.0, kBytesPerPixel = 0.6;
 constexpr double kSmallFile = 65536.0;  // bytes; never worth it
 
 Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
@@ -166,18 +166,18 @@ struct Job {
 };
 
 // What is far off needs fewer digits: a variant's values are kept to at most 1/8 of its own relative RMSE,
-// which moves them by a thirtieth of that (uniform: step/√12), and at most to 2⁻⁶ of their size, where
-// banding would show.
-int DroppedBits(const VariantResult& variant) {
+// which moves them by a thirtieth of that (uniform: step/√12), and in steps of at most 2^(most_bits − 10).
+int DroppedBits(const VariantResult& variant, int most_bits) {
   const double error = variant.total.rel_rmse;
   if (!(error > 0.0)) return 0;
-  return static_cast<int>(std::clamp(std::floor(std::log2(error / 8.0 * 1024.0)), 0.0, 4.0));
+  return std::clamp(static_cast<int>(std::floor(std::log2(std::min(error, 100.0) / 8.0 * 1024.0))), 0,
+                    most_bits);
 }
 
-// What the folder may take at 512×512; where it would take more, every variant's values lose one bit more, or
-// two.
-constexpr double kMostBytes = 57e6;
-constexpr int kMostExtraBits = 2;
+// What the folder may take at 512×512, and the steps that are tried for it: 0.8 % is below what any map shows
+// by default, 3 % is seen as bands.
+constexpr double kMostBytes = 58e6;
+constexpr int kFewestBits = 3, kMostBits = 5;
 constexpr std::size_t kSampleStride = 12;
 
 double BytesIn(const fs::path& folder) {
@@ -188,7 +188,7 @@ double BytesIn(const fs::path& folder) {
   return bytes;
 }
 
-constexpr int kThumbnailSide = 256;  // pixels at most: twice what the page gives it
+constexpr int kThumbnailSide = 192;  // pixels at most: what the page gives it
 
 // The picture averaged over squares of pixels until its width is a thumbnail's.
 void WriteThumbnail(const fs::path& file, const std::vector<glm::vec3>& picture, int width, double exposure) {
@@ -225,7 +225,7 @@ void Coarsen(HalfImage& shadowed, const HalfImage& truth) {
   }
 }
 
-void WriteImages(const Job& job, int extra_bits, const fs::path& root) {
+void WriteImages(const Job& job, int most_bits, const fs::path& root) {
   const SceneResult& scene = *job.scene;
   const Rounding& rounding = *job.rounding;
   const std::string key = job.folder + "/" + job.stem;
@@ -241,7 +241,7 @@ void WriteImages(const Job& job, int extra_bits, const fs::path& root) {
   } else if (scene.truth) {
     half = ToHalf(*job.image, rounding.coarse_below, *scene.truth, rounding.truth);
     if (job.shadowed) Coarsen(half, rounding.truth);
-    if (job.variant) DropBits(half, DroppedBits(*job.variant) + extra_bits);
+    if (job.variant) DropBits(half, DroppedBits(*job.variant, most_bits));
     WriteText(script, EncodePageImage(key, half, &rounding.truth));
   } else {
     half = ToHalf(*job.image);
@@ -402,21 +402,21 @@ void WriteReport(const Results& results, const fs::path& directory,
     most_bytes = std::max(most_bytes, kMostBytes * scene.width * scene.height / (512.0 * 512.0));
   }
   // Every twelfth picture tells how many bits to spare before all are written.
-  const auto write = [&](std::size_t stride, int extra_bits) {
+  const auto write = [&](std::size_t stride, int most_bits) {
     tbb::parallel_for(std::size_t{0}, (jobs.size() + stride - 1) / stride, [&](std::size_t i) {
-      WriteImages(jobs[stride * i], extra_bits, partial.path());
+      WriteImages(jobs[stride * i], most_bits, partial.path());
       const std::lock_guard lock(mutex);
       ++done;
       if (progress && stride == 1) progress(static_cast<double>(done) / static_cast<double>(jobs.size()));
     });
   };
-  int extra_bits = 0;
-  for (; extra_bits < kMostExtraBits; ++extra_bits) {
-    write(kSampleStride, extra_bits);
+  int most_bits = kFewestBits;
+  for (; most_bits < kMostBits; ++most_bits) {
+    write(kSampleStride, most_bits);
     if (static_cast<double>(kSampleStride) * BytesIn(partial.path()) <= most_bytes) break;
   }
   done = 0;
-  write(1, extra_bits);
+  write(1, most_bits);
 
   WriteText(partial.path() / "results.json", ResultsJson(results));
   WriteText(partial.path() / "results.csv", ResultsCsv(results));
