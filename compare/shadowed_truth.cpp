@@ -226,9 +226,8 @@ struct ShadowBands {
   void Shade(std::size_t i, std::vector<SampledLight>& lights, glm::vec3& diffuse, glm::vec3& specular,
              float& relative_error) const {
     const double total = Sum(glm::dvec3(diffuse)) + Sum(glm::dvec3(specular));
-    std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
+    const std::optional<ShadedPixel> pixel = ShadedPixelAt(scene, pixels, i);
     if (!pixel || !(total > 0.0)) return;
-    pixel->point.brdf = scene.brdf;
     lights.clear();
     bool others = false;  // lights that are free
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {

@@ -20,7 +20,7 @@ constexpr double kMinAlpha = 1e-4;  // as in glsl/surface.glsl
 
 }  // namespace
 
-std::optional<ShadedPixel> ShadedPixelAt(const SurfacePixels& pixels, std::size_t i) {
+std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels& pixels, std::size_t i) {
   if (!pixels.IsSurface(i)) return std::nullopt;
   ShadedPixel pixel;
   pixel.point.position = glm::dvec3(pixels.position[i]);
@@ -28,6 +28,7 @@ std::optional<ShadedPixel> ShadedPixelAt(const SurfacePixels& pixels, std::size_
   pixel.point.to_view = glm::normalize(glm::dvec3(pixels.view_position) - pixel.point.position);
   double roughness = static_cast<double>(pixels.normal[i].w);
   pixel.point.alpha = std::max(roughness * roughness, kMinAlpha);
+  pixel.point.brdf = scene.brdf;
   if (!(glm::dot(pixel.point.normal, pixel.point.to_view) > 0.0)) return std::nullopt;
   glm::dvec3 base(pixels.base_color[i]);
   double metalness = static_cast<double>(pixels.base_color[i].w);
@@ -48,9 +49,8 @@ TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_beg
   band.specular.resize(end - begin, glm::vec3(0.0f));
   band.relative_error.resize(end - begin, 0.0f);
   for (std::size_t i = begin; i < end; ++i) {
-    std::optional<ShadedPixel> pixel = ShadedPixelAt(pixels, i);
+    const std::optional<ShadedPixel> pixel = ShadedPixelAt(scene, pixels, i);
     if (!pixel) continue;
-    pixel->point.brdf = scene.brdf;
     const glm::dvec3 &albedo = pixel->albedo, &f0 = pixel->f0;
     glm::dvec3 diffuse(0.0), specular(0.0), error(0.0);
     for (const Light& light : scene.lights) {

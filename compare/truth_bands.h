@@ -25,7 +25,7 @@ struct ShadedPixel {
   ShadingPoint point;
   glm::dvec3 albedo, f0;
 };
-std::optional<ShadedPixel> ShadedPixelAt(const SurfacePixels& pixels, std::size_t i);
+std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels& pixels, std::size_t i);
 
 // Rows row_begin to row_end − 1 of a picture.
 using BandShader = std::function<TruthBand(int row_begin, int row_end)>;

@@ -86,16 +86,7 @@ void Renderer::Impl::Allocate(glm::ivec2 new_size) {
 }
 
 GLuint Renderer::Impl::LoadTable(const Variant& variant, const arealab::Table& table) {
-  std::string file = table.file;
-  std::map<std::string, std::string> chosen = variant.options;
-  chosen["brdf"] = Name(scene.brdf);
-  for (const auto& [option, choice] : chosen) {
-    const std::string placeholder = "{" + option + "}";
-    for (auto at = file.find(placeholder); at != std::string::npos; at = file.find(placeholder)) {
-      file.replace(at, placeholder.size(), choice);
-    }
-  }
-  const std::string name = "tables/" + file;
+  const std::string name = TableFile(variant, table, scene.brdf);
   std::optional<std::string> bytes = library.Find(name);
   if (!bytes) {
     throw InputError(

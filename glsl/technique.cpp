@@ -4,7 +4,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <initializer_list>
@@ -25,7 +24,7 @@ constexpr std::string_view kHeaderEnd = "---*/";
 // The header's first TOML line is the file's second: added to every line that the TOML reader reports.
 constexpr int kHeaderOffset = 1;
 
-constexpr std::array kShapes{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere};
+const std::vector<LightShape> kShapes{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere};
 const std::vector<std::string> kLobes{"diffuse", "specular"};
 // "ggx" and the other choices of a scene.
 std::vector<std::string> BrdfNames() {
@@ -48,6 +47,12 @@ std::string Upper(std::string text) {
 std::string Lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+std::vector<std::string> ShapeNames(const std::vector<LightShape>& shapes) {
+  std::vector<std::string> names;
+  for (const LightShape shape : shapes) names.emplace_back(Name(shape));
+  return names;
 }
 
 // "two_sided" for each EFFECT_TWO_SIDED that the host emits.
@@ -234,8 +239,7 @@ class HeaderReader {
   }
 
   void ReadSupport(const toml::table& root, Technique& technique) const {
-    std::vector<std::string> shape_names;
-    for (const LightShape shape : kShapes) shape_names.emplace_back(Name(shape));
+    const std::vector<std::string> shape_names = ShapeNames(kShapes);
     for (const std::string& name : NeededList(root, "shapes", shape_names)) {
       const auto index = std::find(shape_names.begin(), shape_names.end(), name) - shape_names.begin();
       technique.shapes.push_back(kShapes[static_cast<std::size_t>(index)]);
@@ -334,20 +338,17 @@ class HeaderReader {
         for (const auto& [name, needed] : choice.needs) {
           const int line = LineOf(*tables[i]->get("choices"));
           if (name == "brdf") {
-            CheckNeededBrdf(technique, choice, needed, line);
+            CheckNeeded(choice, name, needed, technique.brdfs, line);
             continue;
           }
           if (name == "shape") {
-            CheckNeededShape(technique, choice, needed, line);
+            CheckNeeded(choice, name, needed, ShapeNames(technique.shapes), line);
             continue;
           }
           const Option& other = FindOption(technique, name, line);
           std::vector<std::string> names;
           for (const Choice& known : other.choices) names.push_back(known.name);
-          if (std::find(names.begin(), names.end(), needed) == names.end()) {
-            Fail(line, fmt::format("choice \"{}\" needs unknown {} \"{}\"", choice.name, name, needed),
-                 ExpectedNames(needed, names));
-          }
+          CheckNeeded(choice, name, needed, names, line);
           if (is_default && needed != names.front()) {
             Fail(line, fmt::format("default \"{}\" needs {} \"{}\"", choice.name, name, needed),
                  "what the other options' defaults are");
@@ -357,22 +358,11 @@ class HeaderReader {
     }
   }
 
-  void CheckNeededBrdf(const Technique& technique, const Choice& choice, const std::string& needed,
-                       int line) const {
-    if (std::find(technique.brdfs.begin(), technique.brdfs.end(), needed) == technique.brdfs.end()) {
-      Fail(line, fmt::format("choice \"{}\" needs unknown brdf \"{}\"", choice.name, needed),
-           ExpectedNames(needed, technique.brdfs));
-    }
-  }
-
-  void CheckNeededShape(const Technique& technique, const Choice& choice, const std::string& needed,
-                        int line) const {
-    std::vector<std::string> names;
-    for (const LightShape shape : technique.shapes) names.emplace_back(Name(shape));
-    if (std::find(names.begin(), names.end(), needed) == names.end()) {
-      Fail(line, fmt::format("choice \"{}\" needs unknown shape \"{}\"", choice.name, needed),
-           ExpectedNames(needed, names));
-    }
+  void CheckNeeded(const Choice& choice, const std::string& what, const std::string& needed,
+                   const std::vector<std::string>& known, int line) const {
+    if (std::find(known.begin(), known.end(), needed) != known.end()) return;
+    Fail(line, fmt::format("choice \"{}\" needs unknown {} \"{}\"", choice.name, what, needed),
+         ExpectedNames(needed, known));
   }
 
   // No two choices may lead to one define: option "a", choice "b_c" and option "a_b", choice "c".

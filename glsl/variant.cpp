@@ -87,6 +87,18 @@ std::string ShapeList(const std::vector<LightShape>& shapes) {
   return list;
 }
 
+// What the variant's choices need of a scene under `key`: "horizon=true" → "rectangle".
+std::vector<std::pair<std::string, std::string>> NeedsOf(const Variant& variant, const std::string& key) {
+  std::vector<std::pair<std::string, std::string>> needs;
+  for (const Option& option : variant.technique->options) {
+    const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
+    if (const auto needed = choice->needs.find(key); needed != choice->needs.end()) {
+      needs.emplace_back(option.name + "=" + choice->name, needed->second);
+    }
+  }
+  return needs;
+}
+
 // What a scene may call for of a technique beside shapes and lobes, and how to say that it lacks it. (The loop over many
 // lights is the lighting pass's own.)
 struct Need {
@@ -197,6 +209,19 @@ std::vector<Variant> AllVariants(const std::vector<Technique>& techniques) {
   return variants;
 }
 
+std::string TableFile(const Variant& variant, const Table& table, Brdf brdf) {
+  std::string file = "tables/" + table.file;
+  std::map<std::string, std::string> chosen = variant.options;
+  chosen["brdf"] = Name(brdf);
+  for (const auto& [option, choice] : chosen) {
+    const std::string placeholder = "{" + option + "}";
+    for (auto at = file.find(placeholder); at != std::string::npos; at = file.find(placeholder)) {
+      file.replace(at, placeholder.size(), choice);
+    }
+  }
+  return file;
+}
+
 std::optional<std::string> WhyInconsistent(const Variant& variant) {
   for (const Option& option : variant.technique->options) {
     const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
@@ -218,12 +243,10 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
     return fmt::format("{} does not know the BRDF {}, which is the scene's; it knows {}", variant.technique->name, brdf,
                        fmt::join(brdfs, ", "));
   }
-  for (const Option& option : variant.technique->options) {
-    const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
-    const auto needed = choice->needs.find("brdf");
-    if (needed != choice->needs.end() && needed->second != brdf) {
-      return fmt::format("{} with {}={} goes with the BRDF {} alone; the scene's is {}", variant.technique->name,
-                         option.name, choice->name, needed->second, brdf);
+  for (const auto& [choice, needed] : NeedsOf(variant, "brdf")) {
+    if (needed != brdf) {
+      return fmt::format("{} with {} goes with the BRDF {} alone; the scene's is {}", variant.technique->name, choice,
+                         needed, brdf);
     }
   }
   const std::vector<LightShape>& shapes = variant.technique->shapes;
@@ -235,14 +258,11 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
     return fmt::format("{} shades {}; {} is a {}", variant.technique->name, ShapeList(shapes), who,
                        Name(light.shape));
   }
-  for (const Option& option : variant.technique->options) {
-    const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
-    const auto needed = choice->needs.find("shape");
-    if (needed == choice->needs.end()) continue;
+  for (const auto& [choice, needed] : NeedsOf(variant, "shape")) {
     for (const Light& light : scene.lights) {
-      if (needed->second == Name(light.shape)) continue;
-      return fmt::format("{} with {}={} goes with {}s alone; the scene has a {}", variant.technique->name,
-                         option.name, choice->name, needed->second, Name(light.shape));
+      if (needed == Name(light.shape)) continue;
+      return fmt::format("{} with {} goes with {}s alone; the scene has a {}", variant.technique->name, choice, needed,
+                         Name(light.shape));
     }
   }
   const Technique& technique = *variant.technique;

@@ -35,6 +35,10 @@ std::vector<Variant> DefaultVariants(const std::vector<Technique>& techniques);
 // beside the others that it is likely to be seen with. (Every combination would be tens of thousands.)
 std::vector<Variant> AllVariants(const std::vector<Technique>& techniques);
 
+// The library's name of the file that a technique's table is read from, "tables/ltc_ggx_polygon.exr": its placeholders
+// filled with the variant's choices and the scene's BRDF.
+std::string TableFile(const Variant& variant, const Table& table, Brdf brdf);
+
 // A sentence that says which of the variant's choices does not go with another, or nothing.
 std::optional<std::string> WhyInconsistent(const Variant& variant);
 

@@ -109,6 +109,7 @@ fresnel = "lobe"
 #include "sphere"
 #include "clipped_proxy.glsl"
 #include "disk"
+#include "ltc_shading.glsl"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
@@ -121,18 +122,8 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     form_factor = ClippedProxy(LambertVector(view));
     VectorFormFactor whole = ParallelogramVector(LtcTransform(cell.m, view.center), LtcTransform(cell.m, view.half_a), LtcTransform(cell.m, view.half_b));
     transformed = vec3(whole.f.x, whole.f.y, ClippedProxy(whole));
-  } else if (light.shape == SHAPE_DISK) {
-    DiskView view = ViewDisk(light, surface.position, frame);
-    form_factor = LambertDisk(view);
-    transformed = LobeOfDisk(cell.m, view);
   } else {
-    SphereView view = ViewSphere(light, surface.position, frame);
-    form_factor = LambertSphere(view);
-    transformed = LobeOfSphere(cell.m, view);
+    RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
   }
-  float lobe = LtcLobe(transformed.z, form_factor, cell.terms);
-  Radiance result;
-  result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
-  result.specular = LtcReflectance(surface.f0, cell.terms, cell.m, frame.n_dot_v, frame.sine, transformed) * light.radiance * lobe;
-  return result;
+  return LtcRadiance(surface, light, frame, cell, form_factor, transformed);
 }

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "compare/closed_forms.h"
-#include "tests/compare/technique_points.h"
+#include "tests/compare/technique_laws.h"
 
 #include "glsl/dual_begin.h"
 #include "glsl/representative_point.glsl"
@@ -145,7 +145,6 @@ TEST_F(DrobotTechnique, StandsInItsBandsAgainstTruth) {
       {kByTheWord, LightShape::kDisk, 2.81, 3.01},
       {kPublished, LightShape::kSphere, 0.0, 0.79},
   }};
-  constexpr double kSlack = 0.05;  // relative: another driver's rounding moves no figure by more
   std::array<std::vector<PointCase>, 3> cases;
   std::array<std::vector<Shaded>, 3> truth;
   PointRandom random(4);
@@ -159,12 +158,8 @@ TEST_F(DrobotTechnique, StandsInItsBandsAgainstTruth) {
   }
   for (const Band& band : kBands) {
     const auto s = static_cast<std::size_t>(band.shape);
-    const std::vector<Shaded> shaded = points_->Shade(band.variant, cases[s]);
-    const double diffuse = RelativeRmse(shaded, truth[s], &Shaded::diffuse);
-    const double specular = RelativeRmse(shaded, truth[s], &Shaded::specular);
-    EXPECT_NEAR(diffuse, band.diffuse, kSlack * band.diffuse + 1e-4)
-        << band.variant << " " << Name(band.shape);
-    EXPECT_NEAR(specular, band.specular, kSlack * band.specular) << band.variant << " " << Name(band.shape);
+    SCOPED_TRACE(Name(band.shape));
+    ExpectInBand(*points_, band.variant, cases[s], truth[s], band.diffuse, band.specular);
   }
 }
 

@@ -106,16 +106,9 @@ TEST_F(LightFieldTechnique, StandsInItsBandsAgainstTruth) {
     double diffuse, specular;  // measured
   };
   constexpr std::array<Band, 2> kBands{{{"light_field", 0.0, 6.1}, {kPublished, 10.5, 42.6}}};
-  constexpr double kSlack = 0.05;  // relative: another driver's rounding moves no figure by more
   const std::vector<PointCase> cases = RandomPoints(4, kRectangle, 1500);
   const std::vector<Shaded> truth = TruthOf(cases);
-  for (const Band& band : kBands) {
-    const std::vector<Shaded> shaded = points_->Shade(band.variant, cases);
-    EXPECT_NEAR(RelativeRmse(shaded, truth, &Shaded::diffuse), band.diffuse, kSlack * band.diffuse + 1e-4)
-        << band.variant;
-    EXPECT_NEAR(RelativeRmse(shaded, truth, &Shaded::specular), band.specular, kSlack * band.specular)
-        << band.variant;
-  }
+  for (const Band& band : kBands) ExpectInBand(*points_, band.variant, cases, truth, band.diffuse, band.specular);
 }
 
 }  // namespace

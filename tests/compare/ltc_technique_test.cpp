@@ -97,14 +97,8 @@ class LtcTechnique : public testing::Test {
     std::vector<GlObject> tables;
     GLuint unit = 3;
     for (const Table& table : variant.technique->tables) {
-      std::string file = table.file;
-      std::map<std::string, std::string> slots = variant.options;
-      slots["brdf"] = "ggx";
-      for (const auto& [option, choice] : slots) {
-        const std::string slot = "{" + option + "}";
-        if (const auto at = file.find(slot); at != std::string::npos) file.replace(at, slot.size(), choice);
-      }
-      const auto bytes = library_.Find("tables/" + file);
+      const std::string file = TableFile(variant, table, Brdf::kGgx);
+      const auto bytes = library_.Find(file);
       if (!bytes) throw std::runtime_error("no table " + file);
       tables.push_back(UploadTable(gl, DecodeTable(*bytes, file)));
       gl.BindTextureUnit(unit, tables.back().id());

@@ -73,4 +73,15 @@ inline void ExpectFreeOfScale(TechniquePoints& points, const std::string& varian
   EXPECT_LT(RelativeRmse(thousand, one, &Shaded::specular), 1e-4) << variant;
 }
 
+// The variant's relative RMSE against truth is what was measured, from both sides.
+inline void ExpectInBand(TechniquePoints& points, const std::string& variant, const std::vector<PointCase>& cases,
+                         const std::vector<Shaded>& truth, double diffuse, double specular) {
+  constexpr double kSlack = 0.05;  // relative: another driver's rounding moves no figure by more
+  constexpr double kExact = 1e-4;  // of a lobe that is exact
+  const std::vector<Shaded> shaded = points.Shade(variant, cases);
+  EXPECT_NEAR(RelativeRmse(shaded, truth, &Shaded::diffuse), diffuse, diffuse > 0.0 ? kSlack * diffuse : kExact)
+      << variant;
+  EXPECT_NEAR(RelativeRmse(shaded, truth, &Shaded::specular), specular, kSlack * specular) << variant;
+}
+
 }  // namespace arealab

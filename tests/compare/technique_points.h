@@ -174,14 +174,8 @@ class TechniquePoints {
     }
     std::vector<GlObject> tables;
     for (const Table& table : variant.technique->tables) {
-      std::string file = table.file;
-      std::map<std::string, std::string> slots = variant.options;
-      slots["brdf"] = "ggx";
-      for (const auto& [option, choice] : slots) {
-        const std::string slot = "{" + option + "}";
-        if (const auto at = file.find(slot); at != std::string::npos) file.replace(at, slot.size(), choice);
-      }
-      const auto bytes = library_.Find("tables/" + file);
+      const std::string file = TableFile(variant, table, Brdf::kGgx);
+      const auto bytes = library_.Find(file);
       if (!bytes) throw std::runtime_error("no table " + file);
       const auto unit = static_cast<GLuint>(3 + tables.size());
       tables.push_back(UploadTable(gl, DecodeTable(*bytes, file)));

@@ -1,0 +1,23 @@
+// What the LTC techniques share once a rectangle's form factors are known. After ltc_tables.glsl and the options "lobes",
+// "fresnel" and "disk".
+
+// The form factor of a disk or a sphere, and the vector form factor of the light transformed into the lobe's space.
+void RoundLightFactors(Light light, vec3 position, ShadingFrame frame, LtcCell cell, out float form_factor, out vec3 transformed) {
+  if (light.shape == SHAPE_DISK) {
+    DiskView view = ViewDisk(light, position, frame);
+    form_factor = LambertDisk(view);
+    transformed = LobeOfDisk(cell.m, view);
+  } else {
+    SphereView view = ViewSphere(light, position, frame);
+    form_factor = LambertSphere(view);
+    transformed = LobeOfSphere(cell.m, view);
+  }
+}
+
+Radiance LtcRadiance(Surface surface, Light light, ShadingFrame frame, LtcCell cell, float form_factor, vec3 transformed) {
+  float lobe = LtcLobe(transformed.z, form_factor, cell.terms);
+  Radiance result;
+  result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
+  result.specular = LtcReflectance(surface.f0, cell.terms, cell.m, frame.n_dot_v, frame.sine, transformed) * light.radiance * lobe;
+  return result;
+}
