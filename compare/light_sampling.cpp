@@ -4,45 +4,16 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+// clang-format off: the order matters
+#include "glsl/dual_begin.h"
+#include "glsl/low_discrepancy.glsl"
+#include "glsl/dual_end.h"
+// clang-format on
 
 namespace arealab {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
-
-std::uint32_t Reverse(std::uint32_t x) {
-  x = (x >> 16) | (x << 16);
-  x = ((x & 0xFF00FF00u) >> 8) | ((x & 0x00FF00FFu) << 8);
-  x = ((x & 0xF0F0F0F0u) >> 4) | ((x & 0x0F0F0F0Fu) << 4);
-  x = ((x & 0xCCCCCCCCu) >> 2) | ((x & 0x33333333u) << 2);
-  return ((x & 0xAAAAAAAAu) >> 1) | ((x & 0x55555555u) << 1);
-}
-
-// Owen's scrambling of a number whose bits are reversed: each bit is turned by a hash of those below it.
-std::uint32_t ScrambleReversed(std::uint32_t x, std::uint32_t seed) {
-  x ^= x * 0x3d20adeau;  // constants: [Vegdahl 2021, Owen scrambling based on hashing]
-  x += seed;
-  x *= (seed >> 16) | 1u;
-  x ^= x * 0x05526c56u;
-  x ^= x * 0x53a22864u;
-  return x;
-}
-
-// The second coordinate of Sobol's sequence, bits reversed: its matrix is Pascal's triangle modulo 2.
-std::uint32_t SecondReversed(std::uint32_t i) {
-  static const std::array<std::uint32_t, 1024> table = [] {
-    std::array<std::uint32_t, 1024> all{};
-    for (std::uint32_t n = 0; n < all.size(); ++n) {
-      std::uint32_t x = 0;
-      for (std::uint32_t bits = n, v = 1u << 31; bits != 0; bits >>= 1, v ^= v >> 1) {
-        if ((bits & 1u) != 0) x ^= v;
-      }
-      all[n] = Reverse(x);
-    }
-    return all;
-  }();
-  return table[i & 1023u];
-}
 
 double Unit(std::uint32_t x) {
   return (static_cast<double>(x) + 0.5) * 0x1p-32;
@@ -62,8 +33,8 @@ std::uint64_t Mix(std::uint64_t a, std::uint64_t b) {
 }
 
 glm::dvec2 ScrambledSobol(std::uint32_t i, std::uint64_t seed) {
-  return {Unit(Reverse(ScrambleReversed(i, static_cast<std::uint32_t>(seed)))),
-          Unit(Reverse(ScrambleReversed(SecondReversed(i), static_cast<std::uint32_t>(seed >> 32))))};
+  return {Unit(dual::OwenScramble(dual::ReverseBits(i), static_cast<std::uint32_t>(seed))),
+          Unit(dual::OwenScramble(dual::SobolSecond(i), static_cast<std::uint32_t>(seed >> 32)))};
 }
 
 std::optional<LightDirections> LightDirections::From(const glm::dvec3& position, const glm::dvec3& normal,

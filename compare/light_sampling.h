@@ -12,9 +12,8 @@
 
 namespace arealab {
 
-// The i-th of 1024 points of the two-dimensional Sobol' sequence in [0, 1)², Owen-scrambled by `seed`: its
-// first 2^k points are a (0, k, 2)-net for every k [Sobol' 1967; Owen 1995; hash by Burley 2020 and Vegdahl
-// 2021].
+// The i-th point of the two-dimensional Sobol' sequence in [0, 1)², Owen-scrambled by `seed`, by the text of
+// glsl/low_discrepancy.glsl with 32 bits kept: its first 2^k points are a (0, k, 2)-net for every k.
 glm::dvec2 ScrambledSobol(std::uint32_t i, std::uint64_t seed);
 
 // A well mixed function of its arguments [Steele et al. 2014, splitmix64].

@@ -1,162 +1,29 @@
 // The LTC techniques on the GL, each pixel a random shaded point with a random light of its own.
-#include <glad/gl.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <glm/gtc/constants.hpp>
+#include <memory>
 #include <random>
 
-#include "compare/context.h"
-#include "glsl/program.h"
-#include "glsl/table.h"
-#include "glsl/variant.h"
+#include "tests/compare/technique_points.h"
 
 namespace arealab {
 namespace {
 
-// Reads what lighting.frag reads of the scene from a texture, one row of texels per quantity.
-constexpr const char* kPointsShader = R"(#include "surface.glsl"
-#include "platform"
-#include "technique"
-layout(binding = 15) uniform sampler2D cases;
-void main() {
-  int i = int(gl_FragCoord.y) * 256 + int(gl_FragCoord.x);
-  ivec2 at = ivec2(int(gl_FragCoord.x), int(gl_FragCoord.y) * 8);
-  vec4 row0 = texelFetch(cases, at, 0);
-  vec4 row1 = texelFetch(cases, at + ivec2(0, 1), 0);
-  vec4 row2 = texelFetch(cases, at + ivec2(0, 2), 0);
-  vec4 row3 = texelFetch(cases, at + ivec2(0, 3), 0);
-  vec4 row4 = texelFetch(cases, at + ivec2(0, 4), 0);
-  vec4 row5 = texelFetch(cases, at + ivec2(0, 5), 0);
-  Surface surface;
-  surface.position = row0.xyz;
-  surface.roughness = row0.w;
-  surface.alpha = max(row0.w * row0.w, kMinAlpha);
-  surface.normal = row1.xyz;
-  surface.diffuse_albedo = vec3(1.0);
-  surface.f0 = vec3(row1.w);
-  Light light;
-  light.shape = SHAPE_RECTANGLE;
-  light.two_sided = false;
-  light.center = row2.xyz;
-  light.half_size = vec2(row3.w, row4.w);
-  light.axis_x = row3.xyz;
-  light.axis_y = row4.xyz;
-  light.normal = row5.xyz;
-  light.half_axis_x = light.axis_x * light.half_size.x;
-  light.half_axis_y = light.axis_y * light.half_size.y;
-  light.area = 4.0 * light.half_size.x * light.half_size.y;
-  light.radiance = vec3(1.0);
-  light.products = vec3(light.half_size.x * light.half_size.x, light.half_size.y * light.half_size.y,
-                        2.0 * light.half_size.x * light.half_size.y);
-  Radiance radiance = ShadeLight(surface, light, texelFetch(cases, at + ivec2(0, 6), 0).xyz);
-  WriteRadiance(radiance.diffuse, radiance.specular);
-}
-)";
-
-constexpr int kColumns = 256;
-constexpr int kRowsPerCase = 8;
-
-struct PointCase {
-  glm::dvec3 position{0.0}, normal{0.0, 0.0, 1.0}, to_view{0.0, 0.0, 1.0};
-  double roughness = 0.5, f0 = 1.0;
-  glm::dvec3 center{0.0, 0.0, 1.0}, axis_x{1.0, 0.0, 0.0}, axis_y{0.0, -1.0, 0.0},
-      light_normal{0.0, 0.0, -1.0};
-  glm::dvec2 half_size{1.0};
-};
-
-struct Shaded {
-  float diffuse, specular;
-};
-
 class LtcTechnique : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::filesystem::temp_directory_path() / ("arealab_ltc_points_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "points.frag") << kPointsShader;
-  }
-  static void TearDownTestSuite() { std::filesystem::remove_all(folder_); }
+  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>("ltc_points"); }
+  static void TearDownTestSuite() { points_.reset(); }
 
-  std::vector<Shaded> Shade(const std::string& variant_name, const std::vector<PointCase>& cases,
-                            Precision precision = Precision::kFloat) {
-    const GladGLContext& gl = context_->gl();
-    const Variant variant = ParseVariant(techniques_, variant_name);
-    std::vector<std::pair<std::string, int>> effects;
-    for (const char* name : {"RECTANGLE", "DIFFUSE", "SPECULAR", "FRESNEL"})
-      effects.emplace_back(std::string("EFFECT_") + name, 1);
-    for (const char* name : {"DISK", "SPHERE", "TWO_SIDED", "MANY_LIGHTS"})
-      effects.emplace_back(std::string("EFFECT_") + name, 0);
-    const Program program(gl, Expand(library_, "fullscreen.vert", variant, effects, Precision::kFloat),
-                          Expand(library_, "points.frag", variant, effects, precision));
-    std::vector<GlObject> tables;
-    GLuint unit = 3;
-    for (const Table& table : variant.technique->tables) {
-      const std::string file = TableFile(variant, table, Brdf::kGgx);
-      const auto bytes = library_.Find(file);
-      if (!bytes) throw std::runtime_error("no table " + file);
-      tables.push_back(UploadTable(gl, DecodeTable(*bytes, file)));
-      gl.BindTextureUnit(unit, tables.back().id());
-      program.Set("table_" + table.name, static_cast<int>(unit++));
-    }
-    const glm::ivec2 size(kColumns, static_cast<int>((cases.size() + kColumns - 1) / kColumns));
-    std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x * size.y * kRowsPerCase));
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      const PointCase& c = cases[i];
-      const auto put = [&](std::size_t row, const glm::dvec3& v, double w) {
-        texels[(i / kColumns * kRowsPerCase + row) * kColumns + i % kColumns] =
-            glm::vec4(glm::vec3(v), static_cast<float>(w));
-      };
-      put(0, c.position, c.roughness);
-      put(1, c.normal, c.f0);
-      put(2, c.center, 0.0);
-      put(3, c.axis_x, c.half_size.x);
-      put(4, c.axis_y, c.half_size.y);
-      put(5, c.light_normal, 0.0);
-      put(6, c.to_view, 0.0);
-    }
-    GlObject input = MakeTexture(gl, GL_RGBA32F, 1, {size.x, size.y * kRowsPerCase});
-    gl.TextureSubImage2D(input.id(), 0, 0, 0, size.x, size.y * kRowsPerCase, GL_RGBA, GL_FLOAT,
-                         texels.data());
-    gl.BindTextureUnit(15, input.id());
-    GlObject diffuse = MakeTexture(gl, GL_RGBA32F, 1, size), specular = MakeTexture(gl, GL_RGBA32F, 1, size);
-    GlObject framebuffer = MakeFramebuffer(gl);
-    gl.NamedFramebufferTexture(framebuffer.id(), GL_COLOR_ATTACHMENT0, diffuse.id(), 0);
-    gl.NamedFramebufferTexture(framebuffer.id(), GL_COLOR_ATTACHMENT1, specular.id(), 0);
-    const std::array<GLenum, 2> targets{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    gl.NamedFramebufferDrawBuffers(framebuffer.id(), 2, targets.data());
-    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
-    gl.Viewport(0, 0, size.x, size.y);
-    GlObject vertices = MakeVertexArray(gl);
-    gl.BindVertexArray(vertices.id());
-    gl.UseProgram(program.id());
-    gl.DrawArrays(GL_TRIANGLES, 0, 3);
-    std::vector<glm::vec4> out(static_cast<std::size_t>(size.x * size.y));
-    std::vector<Shaded> result(cases.size());
-    gl.GetTextureImage(diffuse.id(), 0, GL_RGBA, GL_FLOAT,
-                       static_cast<GLsizei>(out.size() * sizeof(glm::vec4)), out.data());
-    for (std::size_t i = 0; i < cases.size(); ++i) result[i].diffuse = out[i].x;
-    gl.GetTextureImage(specular.id(), 0, GL_RGBA, GL_FLOAT,
-                       static_cast<GLsizei>(out.size() * sizeof(glm::vec4)), out.data());
-    for (std::size_t i = 0; i < cases.size(); ++i) result[i].specular = out[i].x;
-    gl.BindVertexArray(0);
-    gl.UseProgram(0);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
-    EXPECT_EQ(gl.GetError(), static_cast<GLenum>(GL_NO_ERROR));
-    return result;
+  static std::vector<Shaded> Shade(const std::string& variant, const std::vector<PointCase>& cases,
+                                   Precision precision = Precision::kFloat) {
+    return points_->Shade(variant, cases, precision);
   }
 
-  static std::filesystem::path folder_;
-  std::unique_ptr<Context> context_ = CreateContext(ContextKind::kOsmesa);
-  ShaderLibrary library_{folder_};
-  std::vector<Technique> techniques_ = LoadTechniques(library_);
+  inline static std::unique_ptr<TechniquePoints> points_;
 };
-std::filesystem::path LtcTechnique::folder_;
 
 class Random {
  public:
@@ -204,9 +71,9 @@ Difference Compare(const std::vector<Shaded>& a, const std::vector<Shaded>& b, M
   Difference result;
   std::vector<double> all;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const double d = double{a[i].*member} - double{b[i].*member};
+    const double d = a[i].*member - b[i].*member;
     squares += d * d;
-    reference += double{b[i].*member} * double{b[i].*member};
+    reference += b[i].*member * b[i].*member;
     result.max = std::max(result.max, std::abs(d));
     all.push_back(std::abs(d));
   }
@@ -219,7 +86,7 @@ Difference Compare(const std::vector<Shaded>& a, const std::vector<Shaded>& b, M
 
 bool IsSound(const std::vector<Shaded>& shaded) {
   return std::all_of(shaded.begin(), shaded.end(), [](const Shaded& s) {
-    return std::isfinite(s.diffuse) && std::isfinite(s.specular) && s.diffuse >= 0.0f && s.specular >= 0.0f;
+    return std::isfinite(s.diffuse) && std::isfinite(s.specular) && s.diffuse >= 0.0 && s.specular >= 0.0;
   });
 }
 
@@ -404,8 +271,8 @@ TEST_F(LtcTechnique, DividedMatricesBandWhereTheTalkSaysSo) {
     constexpr std::size_t kStep = 16;
     for (std::size_t i = kStep; i + kStep < shaded.size(); ++i)
       banding.jump = std::max(banding.jump,
-                              std::abs(double{shaded[i - kStep].specular} - 2.0 * double{shaded[i].specular} +
-                                       double{shaded[i + kStep].specular}));
+                              std::abs(shaded[i - kStep].specular - 2.0 * shaded[i].specular +
+                                       shaded[i + kStep].specular));
     return banding;
   };
   // Measured: none 0.0016, 0.0023 (the mirror frame's own jump 0.0022, the highlight's curvature); middle
@@ -443,9 +310,9 @@ TEST_F(LtcTechnique, DegenerateInputsStayFiniteForEveryOption) {
     }
   }
   int variants = 0;
-  for (const Variant& variant : AllVariants(techniques_)) {
-    const std::string& technique = variant.technique->name;
-    if (technique != "ltc" && technique != "hill") continue;
+  std::vector<Variant> both = points_->Variants("ltc");
+  for (const Variant& variant : points_->Variants("hill")) both.push_back(variant);
+  for (const Variant& variant : both) {
     // Where the tables' rows lie and where Fresnel is taken changes nothing here, and takes long to compile.
     const auto like = [&](const Variant& form, const std::string& option) {
       return variant.options.at(option) == form.options.at(option);
