@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -303,7 +304,8 @@ TEST(Polygon, ClippedFormFactorOfRandomRectangles) {
 // The published fits of θ/sin θ beside the best of their form, over the acute angles: what the comments of
 // the edge files and the README say.
 TEST(Polygon, PublishedEdgeFitsBesideTheBestOfTheirForm) {
-  const auto error = [](const auto& fit, const auto& exact) {
+  using Function = std::function<double(double)>;
+  const auto error = [](const Function& fit, const Function& exact) {
     double worst = 0.0;
     for (int i = 0; i < 200000; ++i) {
       const double y = i / 200000.0;
