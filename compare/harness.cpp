@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cctype>
@@ -107,6 +108,23 @@ std::vector<PairResult> MeasurePairs(const std::vector<VariantResult>& variants)
   return pairs;
 }
 
+// What the scene's variants err by, against the truth and one another.
+void MeasureScene(const std::vector<Variant>& variants, SceneResult& scene) {
+  const RadianceImage& truth = *scene.truth;
+  const FlipReference flip(TotalRadiance(truth), truth.width);
+  tbb::parallel_for(std::size_t{0}, scene.variants.size(), [&](std::size_t v) {
+    VariantResult& row = scene.variants[v];
+    if (!row.image) return;
+    Measure(truth, &flip, &row);
+    // A lobe that a technique does not claim has no figure, nor has the sum.
+    const Technique& technique = *variants[v].technique;
+    if (!technique.diffuse) row.diffuse = row.total = {};
+    if (!technique.specular) row.specular = row.total = {};
+    row.within_truth_error = row.total.rel_rmse < kTruthMargin * scene.truth_relative_error;
+  });
+  scene.pairs = MeasurePairs(scene.variants);
+}
+
 ShadowResult Describe(const ShadowedTruth& shadowed, const RadianceImage& unshadowed) {
   ShadowResult result;
   const std::vector<glm::vec3> with = TotalRadiance(shadowed.radiance), without = TotalRadiance(unshadowed);
@@ -145,6 +163,8 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
   results.software = context.software();
 
   Renderer renderer(context.gl(), library);
+  results.scenes.reserve(options.scenes.size());  // they stay in place while they are measured
+  tbb::task_group measuring;
   const double scene_share = 1.0 / static_cast<double>(std::max<std::size_t>(options.scenes.size(), 1));
   for (std::size_t s = 0; s < options.scenes.size(); ++s) {
     const Scene scene = LoadScene(options.scenes[s]);
@@ -189,25 +209,19 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
       result.variants.push_back(std::move(row));
     }
     if (options.timed_against) {
+      measuring.wait();  // the clock is this process's, on every core
       const auto surfaces = static_cast<int>(std::ranges::count_if(pixels.position, [](glm::vec4 p) { return p.w == 1.0f; }));
       Time(context, renderer, options.variants, *options.timed_against, surfaces, result.variants,
            [&](double fraction) { report("times", 0.7 + 0.2 * fraction); });
     }
     report("errors", 0.9);
-    const FlipReference flip(TotalRadiance(truth.radiance), truth.radiance.width);
-    tbb::parallel_for(std::size_t{0}, result.variants.size(), [&](std::size_t v) {
-      VariantResult& row = result.variants[v];
-      if (!row.image) return;
-      Measure(truth.radiance, &flip, &row);
-      // A lobe that a technique does not claim has no figure, nor has the sum.
-      const Technique& technique = *options.variants[v].technique;
-      if (!technique.diffuse) row.diffuse = row.total = {};
-      if (!technique.specular) row.specular = row.total = {};
-      row.within_truth_error = row.total.rel_rmse < kTruthMargin * truth.worst_relative_error;
-    });
-    result.pairs = MeasurePairs(result.variants);
+    measuring.wait();  // the scene before: at most one is measured while another is shaded
     results.scenes.push_back(std::move(result));
+    measuring.run([&scene_result = results.scenes.back(), &variants = options.variants] {
+      MeasureScene(variants, scene_result);
+    });
   }
+  measuring.wait();
   return results;
 }
 

@@ -176,7 +176,7 @@ int DroppedBits(const VariantResult& variant, int most_bits) {
 
 // What the folder may take at 512×512, and the steps that are tried for it: 0.8 % is below what any map shows
 // by default, 3 % is seen as bands.
-constexpr double kMostBytes = 58e6;
+constexpr double kMostBytes = 56e6;
 constexpr int kFewestBits = 3, kMostBits = 5;
 constexpr std::size_t kSampleStride = 12;
 
