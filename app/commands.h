@@ -40,5 +40,6 @@ void AddRender(CLI::App& app, int& status);
 void AddList(CLI::App& app, int& status);
 void AddFit(CLI::App& app, int& status);
 void AddCheck(CLI::App& app, int& status);
+void AddCost(CLI::App& app, int& status);
 
 }  // namespace arealab

@@ -20,6 +20,7 @@ struct CompareArguments {
   std::vector<std::string> techniques;
   std::vector<std::string> limits;
   std::string out = "out";
+  std::vector<std::string> gpus;
   double tolerance = 1e-4;
   bool all_variants = false;
   bool timing = false;
@@ -82,6 +83,20 @@ bool ExceedsLimits(const Results& results, const std::vector<Limit>& limits) {
   return exceeded;
 }
 
+// Cycles where GPUs are asked for, or by default where the compilers are installed; else why there are none.
+std::string PrepareCost(const CompareArguments& arguments, CompareOptions& options) {
+  if (arguments.gpus == std::vector<std::string>{"none"}) return "--gpu none";
+  const bool asked = !arguments.gpus.empty();
+  try {
+    options.cost = std::make_shared<CostMeter>(asked ? arguments.gpus : std::vector<std::string>{"bonaire", "navi21"},
+                                               options.cache);
+  } catch (const InputError& error) {
+    if (asked) throw;
+    return error.what();
+  }
+  return "";
+}
+
 int RunCompare(const CompareArguments& arguments, const std::string& command_line) {
   std::vector<Limit> limits;
   for (const std::string& text : arguments.limits) limits.push_back(ParseLimit(text));
@@ -95,6 +110,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   options.cache = arguments.common.CacheFolder();
   CheckReportDirectory(arguments.out);
   if (arguments.timing) options.timed_against = ParseVariant(techniques, "point");
+  const std::string no_isa = PrepareCost(arguments, options);
   if (arguments.scenes.empty()) options.scenes = BuiltInScenes();
   for (const std::string& scene : arguments.scenes) options.scenes.push_back(FindScene(scene));
 
@@ -107,6 +123,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
     };
     const std::unique_ptr<Context> context = arguments.common.MakeContext();
     results = Compare(*context, library, options);
+    if (results.no_isa.empty()) results.no_isa = no_isa;
     results.command = command_line;
     results.version = AREALAB_VERSION;
     results.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
@@ -116,6 +133,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
     });
   }
   for (const SceneResult& scene : results.scenes) fmt::print("{}\n", SummaryTable(scene));
+  if (!results.no_isa.empty()) fmt::print("without cycles: {}\n", results.no_isa);
   fmt::print("report: {}\n", (std::filesystem::absolute(arguments.out) / "index.html").lexically_normal().string());
   return ExceedsLimits(results, limits) ? kExitLimitExceeded : 0;
 }
@@ -136,6 +154,10 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
                       "METRIC=X: exit with status 1 where a variant's total error exceeds X, e.g. rel_rmse=0.05");
   command->add_flag("--timing", arguments->timing,
                     "time the lighting pass of every variant as a ratio to point, in interleaved rounds");
+  command->add_option("--gpu", arguments->gpus,
+                      "AMD families whose cycles are counted without them, or none (default: bonaire,navi21 where the "
+                      "compilers are installed)")
+      ->delimiter(',');
   command->add_option("--tolerance", arguments->tolerance, "of the truth, relative, per pixel and light")
       ->capture_default_str()
       ->check(CLI::Range(1e-8, 1e-1));

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   arealab::AddList(app, status);
   arealab::AddFit(app, status);
   arealab::AddCheck(app, status);
+  arealab::AddCost(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

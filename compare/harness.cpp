@@ -70,17 +70,33 @@ VariantResult Describe(const Variant& variant, const Scene& scene) {
 
 // Times the passes of the variants that have an image, on the scene that the renderer drew last.
 void Time(const Context& context, Renderer& renderer, const std::vector<Variant>& variants, const Variant& point,
-          int shaded_pixels, std::vector<VariantResult>& results, const std::function<void(double)>& progress) {
+          int lit_pixels, std::vector<VariantResult>& results, const std::function<void(double)>& progress) {
   std::vector<Variant> timed;
   for (std::size_t v = 0; v < variants.size(); ++v) {
     if (results[v].image) timed.push_back(variants[v]);
   }
   TimingOptions options;
   options.progress = progress;
-  const std::vector<Timing> timings = MeasureTimes(context, renderer, timed, point, shaded_pixels, options);
+  const std::vector<Timing> timings = MeasureTimes(context, renderer, timed, point, lit_pixels, options);
   auto timing = timings.begin();
   for (VariantResult& result : results) {
     if (result.image) result.time = *timing++;
+  }
+}
+
+// Fills `isa`. What another compiler than the GL's refuses costs its own variant the figures, and leaves a reason.
+void CountCycles(const CostMeter& meter, const ShaderLibrary& library, const std::vector<Variant>& variants, const Scene& scene,
+                 std::vector<VariantResult>& results, std::string& reason, const std::function<void(double)>& progress) {
+  try {
+    const auto costs = meter.Measure(library, variants, scene, progress);
+    for (std::size_t v = 0; v < costs.size(); ++v) results[v].isa = costs[v];
+  } catch (const InputError& error) {
+    reason = error.what();
+    for (std::size_t v = 0; variants.size() > 1 && v < variants.size(); ++v) {
+      std::vector<VariantResult> one = {results[v]};
+      CountCycles(meter, library, {variants[v]}, scene, one, reason, {});
+      results[v].isa = one[0].isa;
+    }
   }
 }
 
@@ -161,6 +177,7 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
   results.renderer = context.renderer();
   results.gl_version = context.version();
   results.software = context.software();
+  if (options.cost) results.compilers = options.cost->compilers();
 
   Renderer renderer(context.gl(), library);
   results.scenes.reserve(options.scenes.size());  // they stay in place while they are measured
@@ -210,9 +227,12 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     }
     if (options.timed_against) {
       measuring.wait();  // the clock is this process's, on every core
-      const auto surfaces = static_cast<int>(std::ranges::count_if(pixels.position, [](glm::vec4 p) { return p.w == 1.0f; }));
-      Time(context, renderer, options.variants, *options.timed_against, surfaces, result.variants,
-           [&](double fraction) { report("times", 0.7 + 0.2 * fraction); });
+      Time(context, renderer, options.variants, *options.timed_against, result.lit_pixels, result.variants,
+           [&](double fraction) { report("times", 0.7 + 0.15 * fraction); });
+    }
+    if (options.cost) {
+      CountCycles(*options.cost, library, options.variants, scene, result.variants, results.no_isa,
+                  [&](double fraction) { report("cycles", 0.85 + 0.05 * fraction); });
     }
     report("errors", 0.9);
     measuring.wait();  // the scene before: at most one is measured while another is shaded

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compare/context.h"
+#include "compare/cost.h"
 #include "compare/results.h"
 #include "compare/shadowed_truth.h"
 #include "compare/truth.h"
@@ -26,6 +27,7 @@ struct CompareOptions {
   ShadowOptions shadow;
   std::filesystem::path cache;                               // folder of truths that are already known
   std::optional<Variant> timed_against;                      // `point`, where the passes are to be timed
+  std::shared_ptr<const CostMeter> cost;                     // what compiles for GPUs that are not here; may be null
   std::function<void(const std::string&, double)> progress;  // what is being done, fraction of the whole
 };
 

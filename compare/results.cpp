@@ -1,11 +1,15 @@
 #include "compare/results.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "compare/cost.h"
 #include "compare/results_json.h"
+#include "compare/table.h"
 
 namespace arealab {
 namespace {
@@ -25,6 +29,30 @@ Json ErrorJson(const ErrorMetrics& error) {
   return json;
 }
 
+Json EstimateJson(const Estimate& estimate, const char* interval, const char* name, Json json) {
+  json[name] = Number(estimate.value);
+  const bool known = std::isfinite(estimate.low) && std::isfinite(estimate.high);
+  json[interval] = known ? Json::array({estimate.low, estimate.high}) : Json(nullptr);
+  return json;
+}
+
+Json CostJson(const ShaderCost& cost, const std::string& gpu) {
+  return {{"instructions", cost.instructions}, {"cycles", cost.cycles},     {"registers", cost.vgprs},
+          {"scalar_registers", cost.sgprs},    {"spills", cost.spills},     {"branches", cost.branches},
+          {"bytes", cost.bytes},               {"estimated_ms_1080p", Number(MillisecondsAt1080p(gpu, cost.cycles))}};
+}
+
+Json TimeJson(const Timing& time) {
+  Json json = Json::object();
+  json = EstimateJson(time.ns_per_pixel, "ns_interval", "ns_per_pixel", json);
+  json = EstimateJson(time.ratio_to_point, "ratio_interval", "ratio_to_point", json);
+  json = EstimateJson(time.net_ns_per_pixel, "net_ns_interval", "net_ns_per_pixel", json);
+  json = EstimateJson(time.net_ratio_to_point, "net_ratio_interval", "net_ratio_to_point", json);
+  json["net_refusal"] = time.refusal.empty() ? Json(nullptr) : Json(time.refusal);
+  json["rounds"] = time.rounds;
+  return json;
+}
+
 Json VariantJson(const VariantResult& variant) {
   Json json;
   json["name"] = variant.name;
@@ -40,15 +68,8 @@ Json VariantJson(const VariantResult& variant) {
                    {"diffuse", ErrorJson(variant.diffuse)},
                    {"specular", ErrorJson(variant.specular)},
                    {"split", {{"model", nullptr}, {"approximation", nullptr}, {"rounding", nullptr}}}};
-  Json interval = nullptr;
-  if (std::isfinite(variant.time.ratio_low) && std::isfinite(variant.time.ratio_high)) {
-    interval = Json::array({variant.time.ratio_low, variant.time.ratio_high});
-  }
-  json["time"] = {{"ns_per_pixel", Number(variant.time.ns_per_pixel)},
-                  {"ratio_to_point", Number(variant.time.ratio_to_point)},
-                  {"ratio_interval", interval},
-                  {"rounds", variant.time.rounds}};
-  json["isa"] = Json::object();
+  json["time"] = TimeJson(variant.time);
+  json["isa"] = IsaObject(variant.isa);
   return json;
 }
 
@@ -98,12 +119,6 @@ std::string CsvNumber(double v) {
   return std::isfinite(v) ? fmt::format("{:.9g}", v) : std::string();
 }
 
-// Characters, not bytes: names and units are UTF-8.
-std::size_t Columns(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 std::string Percent(double v) {
   if (!std::isfinite(v)) return "–";
   const double percent = 100.0 * v;
@@ -111,7 +126,24 @@ std::string Percent(double v) {
   return fmt::format("{:.{}f}", percent, std::abs(percent) < 1.0 ? 3 : std::abs(percent) < 10.0 ? 2 : 1);
 }
 
+// The median and half the width of its interval: "2.31 ± 0.02".
+std::string WithSpread(const Estimate& ratio) {
+  if (!std::isfinite(ratio.value)) return "–";
+  return fmt::format("{:.2f} ± {:.2f}", ratio.value, 0.5 * (ratio.high - ratio.low));
+}
+
 }  // namespace
+
+nlohmann::ordered_json IsaObject(const std::map<std::string, GpuCost>& costs) {
+  Json json = Json::object();
+  for (const auto& [gpu, cost] : costs) {
+    Json core = CostJson(cost.core, gpu);
+    core["paths"] = Json::object();
+    for (const auto& [path, shader] : cost.paths) core["paths"][path] = CostJson(shader, gpu);
+    json[gpu] = {{"core", core}, {"full", CostJson(cost.full, gpu)}};
+  }
+  return json;
+}
 
 nlohmann::ordered_json ResultsObject(const Results& results) {
   Json json;
@@ -125,6 +157,8 @@ nlohmann::ordered_json ResultsObject(const Results& results) {
   json["renderer"] = results.renderer;
   json["gl_version"] = results.gl_version;
   json["software"] = results.software;
+  json["isa_compilers"] = results.compilers.empty() ? Json(nullptr) : Json(results.compilers);
+  json["no_isa"] = results.no_isa.empty() ? Json(nullptr) : Json(results.no_isa);
   json["scenes"] = Json::array();
   for (const SceneResult& scene : results.scenes) json["scenes"].push_back(SceneJson(scene));
   return json;
@@ -135,24 +169,51 @@ std::string ResultsJson(const Results& results) {
 }
 
 std::string ResultsCsv(const Results& results) {
+  std::set<std::string> gpus;
+  for (const SceneResult& scene : results.scenes) {
+    for (const VariantResult& variant : scene.variants) {
+      for (const auto& [gpu, cost] : variant.isa) gpus.insert(gpu);
+    }
+  }
   std::string csv =
       "scene,variant,lobe,supported,rel_rmse,bias,relmse,mae,p99,max,max_x,max_y,flip,nonfinite_pixels,"
-      "within_truth_error,truth_relative_error,ns_per_pixel,ratio_to_point,ratio_low,ratio_high,reason\r\n";
+      "within_truth_error,truth_relative_error,ns_per_pixel,ns_low,ns_high,ratio_to_point,ratio_low,ratio_high,"
+      "net_ns_per_pixel,net_ns_low,net_ns_high,net_ratio_to_point,net_ratio_low,net_ratio_high";
+  for (const std::string& gpu : gpus) {
+    csv += fmt::format(",{0}_core_instructions,{0}_core_cycles,{0}_full_instructions,{0}_full_cycles", gpu);
+  }
+  csv += ",reason\r\n";
   for (const SceneResult& scene : results.scenes) {
     for (const VariantResult& variant : scene.variants) {
       const std::pair<const char*, const ErrorMetrics*> lobes[3] = {
           {"total", &variant.total}, {"diffuse", &variant.diffuse}, {"specular", &variant.specular}};
       for (const auto& [lobe, error] : lobes) {
         const bool located = error->max_x >= 0;
-        csv += fmt::format(
-            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", CsvField(scene.name),
-            CsvField(variant.name), lobe, variant.supported ? 1 : 0, CsvNumber(error->rel_rmse),
-            CsvNumber(error->bias), CsvNumber(error->relmse), CsvNumber(error->mae), CsvNumber(error->p99),
-            CsvNumber(error->max), located ? std::to_string(error->max_x) : "",
-            located ? std::to_string(error->max_y) : "", CsvNumber(error->flip), variant.nonfinite_pixels,
-            variant.within_truth_error ? 1 : 0, CsvNumber(scene.truth_relative_error),
-            CsvNumber(variant.time.ns_per_pixel), CsvNumber(variant.time.ratio_to_point),
-            CsvNumber(variant.time.ratio_low), CsvNumber(variant.time.ratio_high), CsvField(variant.reason));
+        std::vector<std::string> fields = {CsvField(scene.name), CsvField(variant.name), lobe, variant.supported ? "1" : "0"};
+        for (const double v : {error->rel_rmse, error->bias, error->relmse, error->mae, error->p99, error->max}) {
+          fields.push_back(CsvNumber(v));
+        }
+        fields.push_back(located ? std::to_string(error->max_x) : "");
+        fields.push_back(located ? std::to_string(error->max_y) : "");
+        fields.push_back(CsvNumber(error->flip));
+        fields.push_back(std::to_string(variant.nonfinite_pixels));
+        fields.push_back(variant.within_truth_error ? "1" : "0");
+        fields.push_back(CsvNumber(scene.truth_relative_error));
+        const Timing& time = variant.time;
+        for (const Estimate& estimate :
+             {time.ns_per_pixel, time.ratio_to_point, time.net_ns_per_pixel, time.net_ratio_to_point}) {
+          for (const double v : {estimate.value, estimate.low, estimate.high}) fields.push_back(CsvNumber(v));
+        }
+        for (const std::string& gpu : gpus) {
+          const auto found = variant.isa.find(gpu);
+          const bool known = found != variant.isa.end();
+          for (const ShaderCost* cost : {known ? &found->second.core : nullptr, known ? &found->second.full : nullptr}) {
+            fields.push_back(cost != nullptr ? std::to_string(cost->instructions) : "");
+            fields.push_back(cost != nullptr ? std::to_string(cost->cycles) : "");
+          }
+        }
+        fields.push_back(CsvField(variant.reason));
+        csv += fmt::format("{}\r\n", fmt::join(fields, ","));
       }
     }
   }
@@ -168,12 +229,18 @@ std::string SummaryTable(const SceneResult& scene) {
   };
   std::stable_sort(order.begin(), order.end(), [&](auto* a, auto* b) { return key(a) < key(b); });
   const auto any = [&](auto predicate) { return std::any_of(order.begin(), order.end(), predicate); };
-  const bool timed = any([](const VariantResult* v) { return std::isfinite(v->time.ratio_to_point); });
+  const bool timed = any([](const VariantResult* v) { return std::isfinite(v->time.ratio_to_point.value); });
   const bool flipped = any([](const VariantResult* v) { return std::isfinite(v->total.flip); });
+  std::set<std::string> gpus;
+  for (const VariantResult* v : order) {
+    for (const auto& [gpu, cost] : v->isa) gpus.insert(gpu);
+  }
 
   std::vector<std::vector<std::string>> rows = {{"variant", "error %", "diffuse", "specular", "bias %"}};
   if (flipped) rows[0].push_back("FLIP");
-  if (timed) rows[0].push_back("time");
+  if (timed) rows[0].push_back("× point");
+  if (timed) rows[0].push_back("net");
+  for (const std::string& gpu : gpus) rows[0].push_back(gpu);
   rows[0].push_back("");
   for (const VariantResult* v : order) {
     if (!v->supported) {
@@ -185,8 +252,12 @@ std::string SummaryTable(const SceneResult& scene) {
     if (flipped)
       rows.back().push_back(std::isfinite(v->total.flip) ? fmt::format("{:.4f}", v->total.flip) : "–");
     if (timed) {
-      rows.back().push_back(
-          std::isfinite(v->time.ratio_to_point) ? fmt::format("×{:.2f}", v->time.ratio_to_point) : "–");
+      rows.back().push_back(WithSpread(v->time.ratio_to_point));
+      rows.back().push_back(WithSpread(v->time.net_ratio_to_point));
+    }
+    for (const std::string& gpu : gpus) {
+      const auto found = v->isa.find(gpu);
+      rows.back().push_back(found == v->isa.end() ? "–" : std::to_string(found->second.core.cycles));
     }
     std::string remark = v->within_truth_error ? "within truth's error" : "";
     if (v->nonfinite_pixels > 0) {
@@ -194,23 +265,11 @@ std::string SummaryTable(const SceneResult& scene) {
     }
     rows.back().push_back(remark);
   }
-  std::vector<std::size_t> widths(rows[0].size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size() && (c == 0 || row.size() > 2); ++c) {
-      widths[c] = std::max(widths[c], Columns(row[c]));
-    }
-  }
-  std::string text = fmt::format("{}: {}\n", scene.name, scene.question);
-  for (const auto& row : rows) {
-    std::string line = "  ";
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const bool left = c == 0 || row.size() == 2 || c + 1 == row.size();
-      const std::string pad(widths[c] > Columns(row[c]) && row.size() >= c ? widths[c] - Columns(row[c]) : 0,
-                            ' ');
-      line += (c > 0 ? "  " : "") + (left ? row[c] + pad : pad + row[c]);
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
+  std::string text = fmt::format("{}: {}\n{}", scene.name, scene.question, AlignedTable(rows));
+  for (const VariantResult* v : order) {  // one reason holds for all
+    if (v->time.refusal.empty()) continue;
+    text += fmt::format("  net of the pass-through refused: {}\n", v->time.refusal);
+    break;
   }
   return text;
 }

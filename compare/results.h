@@ -23,10 +23,31 @@ struct ErrorMetrics {
   int max_x = -1, max_y = -1;  // the pixel of max
 };
 
+struct Estimate {  // a median with its 95 % bootstrap interval
+  double value = kNotMeasured, low = kNotMeasured, high = kNotMeasured;
+};
+
 struct Timing {  // of the lighting pass alone
-  double ns_per_pixel = kNotMeasured, ratio_to_point = kNotMeasured;
-  double ratio_low = kNotMeasured, ratio_high = kNotMeasured;  // 95 % interval
+  Estimate ns_per_pixel, ratio_to_point;
+  // Less a pass that reads the same G-buffer and writes it through; the ratio is not measured where point's own net time
+  // is within 3 × its spread, and `refusal` says so.
+  Estimate net_ns_per_pixel, net_ratio_to_point;
+  std::string refusal;
   int rounds = 0;
+};
+
+// What a GPU's compiler makes of a shader; compare/cost.h.
+struct ShaderCost {
+  int instructions = 0, cycles = 0;  // cycles per wave of 64 on one SIMD, the inverse throughput; divergence discounted
+  int vgprs = 0, sgprs = 0, spills = 0, branches = 0, bytes = 0;
+  bool operator==(const ShaderCost&) const = default;
+};
+
+struct GpuCost {
+  // Of a pixel that is lit: guards assumed passed, so that what is behind them counts in full.
+  ShaderCost core;  // the technique alone: glsl/core.frag
+  ShaderCost full;  // the lighting pass
+  std::map<std::string, ShaderCost> paths;  // of a branching core, by where the light lies: "above", "crossing", "below"
 };
 
 struct VariantResult {
@@ -41,6 +62,7 @@ struct VariantResult {
   ErrorMetrics total, diffuse, specular;  // against truth
   bool within_truth_error = false;        // error below 4 × the truth's own: not ranked
   Timing time;
+  std::map<std::string, GpuCost> isa;     // by the GPU's name; empty where not compiled
   std::shared_ptr<const RadianceImage> image;  // null where not supported
 };
 
@@ -83,6 +105,8 @@ struct Results {
   std::map<std::string, std::string> machine;  // "cpu", "cores", "os", "compiler", library versions
   std::string platform, renderer, gl_version;  // the context
   bool software = true;                        // a CPU draws
+  std::string compilers;                       // that the figures of `isa` come from
+  std::string no_isa;                          // why there are none
   std::vector<SceneResult> scenes;
 };
 

@@ -9,4 +9,7 @@ namespace arealab {
 
 nlohmann::ordered_json ResultsObject(const Results& results);
 
+// The field `isa` of a variant.
+nlohmann::ordered_json IsaObject(const std::map<std::string, GpuCost>& costs);
+
 }  // namespace arealab

@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <random>
 
@@ -78,7 +79,7 @@ void CheckClock(const DrawClock& clock, Renderer& renderer, const Variant& point
 
 }  // namespace
 
-Interval BootstrapMedian(const std::vector<double>& values) {
+Estimate BootstrapMedian(const std::vector<double>& values) {
   constexpr int kResamples = 1000;
   constexpr unsigned kSeed = 1;
   std::mt19937 random(kSeed);
@@ -91,40 +92,76 @@ Interval BootstrapMedian(const std::vector<double>& values) {
   return {Median(values), medians[kResamples / 40], medians[kResamples - 1 - kResamples / 40]};
 }
 
+std::vector<Timing> TimingsOfRounds(const std::vector<std::vector<double>>& rounds, int lit_pixels) {
+  const double ns = 1e9 / std::max(lit_pixels, 1);
+  const auto over_rounds = [&](const auto& figure) {
+    std::vector<double> values;
+    for (const std::vector<double>& round : rounds) values.push_back(figure(round));
+    return values;
+  };
+  const std::vector<double> net_point = over_rounds([](const auto& round) { return round[1] - round[0]; });
+  const double typical = Median(net_point);
+  std::vector<double> off;
+  for (const double net : net_point) off.push_back(std::abs(net - typical));
+  constexpr double kDeviation = 1.4826;  // of a normal distribution's median absolute deviation
+  const double spread = kDeviation * Median(off);
+  std::string refusal;
+  if (!(typical > 3.0 * spread)) {
+    refusal = fmt::format("point's net time, {:.2f} ns, is within 3 times its spread of {:.2f} ns", ns * typical, ns * spread);
+  }
+  std::vector<Timing> timings;
+  for (std::size_t v = 2; v < rounds[0].size(); ++v) {
+    Timing timing;
+    timing.ns_per_pixel = BootstrapMedian(over_rounds([&](const auto& round) { return ns * round[v]; }));
+    timing.ratio_to_point = BootstrapMedian(over_rounds([&](const auto& round) { return round[v] / round[1]; }));
+    timing.net_ns_per_pixel = BootstrapMedian(over_rounds([&](const auto& round) { return ns * (round[v] - round[0]); }));
+    if (refusal.empty()) {
+      timing.net_ratio_to_point =
+          BootstrapMedian(over_rounds([&](const auto& round) { return (round[v] - round[0]) / (round[1] - round[0]); }));
+    }
+    timing.refusal = refusal;
+    timing.rounds = static_cast<int>(rounds.size());
+    timings.push_back(timing);
+  }
+  return timings;
+}
+
 std::vector<Timing> MeasureTimes(const Context& context, Renderer& renderer, const std::vector<Variant>& variants,
-                                 const Variant& point, int shaded_pixels, const TimingOptions& options) {
+                                 const Variant& point, int lit_pixels, const TimingOptions& options) {
   const DrawClock clock(context);
-  renderer.Draw(point);  // a first draw compiles
+  renderer.DrawThrough();  // a first draw compiles
+  renderer.Draw(point);
   for (const Variant& variant : variants) renderer.Draw(variant);
   CheckClock(clock, renderer, point);
 
-  std::vector<std::vector<double>> seconds(variants.size()), ratios(variants.size());
+  std::vector<std::vector<double>> rounds;
+  const auto settled = [&](std::size_t v) {
+    std::vector<double> ratios;
+    for (const std::vector<double>& round : rounds) ratios.push_back(round[v] / round[1]);
+    const Estimate ratio = BootstrapMedian(ratios);
+    return ratio.high - ratio.low <= 2.0 * options.target * ratio.value;
+  };
   double spent = 0.0;
-  int rounds = 0;
-  bool settled = false;
-  while (!settled && rounds < options.max_rounds && (rounds < options.min_rounds || spent < options.seconds)) {
-    const double reference = clock.Seconds([&] { renderer.Draw(point); });
-    spent += reference;
-    for (std::size_t v = 0; v < variants.size(); ++v) {
-      const double time = clock.Seconds([&] { renderer.Draw(variants[v]); });
-      spent += time;
-      seconds[v].push_back(time);
-      ratios[v].push_back(time / reference);
+  for (bool known = false; !known && static_cast<int>(rounds.size()) < options.max_rounds;) {
+    const bool enough = static_cast<int>(rounds.size()) >= options.min_rounds;
+    if (enough && spent >= options.seconds) break;
+    // Each round begins one draw later, so that none always follows the same one.
+    const std::size_t draws = 2 + variants.size(), first = rounds.size() % draws;
+    std::vector<double>& round = rounds.emplace_back(draws);
+    for (std::size_t i = 0; i < draws; ++i) {
+      const std::size_t draw = (first + i) % draws;
+      round[draw] = clock.Seconds([&] {
+        if (draw == 0) renderer.DrawThrough();
+        if (draw == 1) renderer.Draw(point);
+        if (draw >= 2) renderer.Draw(variants[draw - 2]);
+      });
+      spent += round[draw];
     }
-    ++rounds;
-    if (options.progress) options.progress(static_cast<double>(rounds) / options.max_rounds);
-    settled = rounds >= options.min_rounds && std::all_of(ratios.begin(), ratios.end(), [&](const auto& values) {
-                const Interval interval = BootstrapMedian(values);
-                return interval.high - interval.low <= 2.0 * options.target * interval.median;
-              });
+    if (options.progress) options.progress(static_cast<double>(rounds.size()) / options.max_rounds);
+    known = static_cast<int>(rounds.size()) >= options.min_rounds;
+    for (std::size_t v = 2; known && v < round.size(); ++v) known = settled(v);
   }
-
-  std::vector<Timing> timings(variants.size());
-  for (std::size_t v = 0; v < variants.size(); ++v) {
-    const Interval ratio = BootstrapMedian(ratios[v]);
-    timings[v] = {1e9 * Median(seconds[v]) / std::max(shaded_pixels, 1), ratio.median, ratio.low, ratio.high, rounds};
-  }
-  return timings;
+  return TimingsOfRounds(rounds, lit_pixels);
 }
 
 }  // namespace arealab

@@ -20,15 +20,16 @@ struct TimingOptions {
 };
 
 // One Timing per variant, of the scene that `renderer` drew last. `point` is the variant that ratios refer to;
-// shaded_pixels is what ns_per_pixel divides by. The clock is process CPU time where a CPU draws, else a timer query.
+// lit_pixels is what times are divided by. A round draws a pass that only reads the G-buffer and writes it through,
+// `point` and every variant, in an order that turns by one from round to round. The clock is process CPU time where a CPU draws, else a timer query.
 // Throws InputError where the clock does not show a draw repeated twice as twice as long (within a factor of 1.25).
 std::vector<Timing> MeasureTimes(const Context& context, Renderer& renderer, const std::vector<Variant>& variants,
-                                 const Variant& point, int shaded_pixels, const TimingOptions& options = {});
+                                 const Variant& point, int lit_pixels, const TimingOptions& options = {});
+
+// From one list per round: seconds of the pass-through, of `point` and of each variant.
+std::vector<Timing> TimingsOfRounds(const std::vector<std::vector<double>>& rounds, int lit_pixels);
 
 // Median and its 95 % bootstrap interval, 1000 resamples from a fixed seed.
-struct Interval {
-  double median, low, high;
-};
-Interval BootstrapMedian(const std::vector<double>& values);
+Estimate BootstrapMedian(const std::vector<double>& values);
 
 }  // namespace arealab

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "compare/content_hash.h"
 #include "compare/shadowed_truth.h"
 #include "compare/truth_bands.h"
 
@@ -26,44 +27,6 @@ namespace {
 constexpr std::uint64_t kVersion = 4;
 constexpr std::uint64_t kShadowVersion = 2;  // of the visibility on top of it
 constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
-
-// FNV-1a over 64-bit words, in two lanes that start apart and turn differently; not against malice.
-class Hash {
- public:
-  void Bytes(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    while (size > 0) {
-      std::uint64_t word = 0;
-      std::size_t step = size < sizeof word ? size : sizeof word;
-      std::memcpy(&word, bytes, step);
-      bytes += step;
-      size -= step;
-      Word(word);
-    }
-  }
-  template <typename T>
-  void Value(const T& value) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
-    Bytes(&value, sizeof value);
-  }
-  void Vector(const glm::dvec3& v) {
-    Value(v.x);
-    Value(v.y);
-    Value(v.z);
-  }
-  std::uint64_t low() const { return low_; }
-  std::string Text() const { return fmt::format("{:016x}{:016x}", high_, low_); }
-
- private:
-  void Word(std::uint64_t word) {
-    constexpr std::uint64_t kPrime = 0x100000001b3;  // of FNV
-    low_ = (low_ ^ word) * kPrime;
-    low_ ^= low_ >> 32;  // whole words: spread the high bits down, which plain FNV never does
-    high_ = (((high_ << 23) | (high_ >> 41)) ^ word) * kPrime;
-    high_ ^= high_ >> 29;
-  }
-  std::uint64_t low_ = 0xcbf29ce484222325, high_ = 0x9ae16a3b2f90404f;
-};
 
 struct Header {
   std::array<char, 8> magic;
@@ -77,7 +40,7 @@ std::size_t PixelCount(const Header& header) {
 }
 
 std::uint64_t Checksum(const TruthBand& band) {
-  Hash hash;
+  ContentHash hash;
   hash.Bytes(band.diffuse.data(), band.diffuse.size() * sizeof(glm::vec3));
   hash.Bytes(band.specular.data(), band.specular.size() * sizeof(glm::vec3));
   hash.Bytes(band.relative_error.data(), band.relative_error.size() * sizeof(float));
@@ -149,23 +112,29 @@ void Write(const std::filesystem::path& file, const std::string& key, int width,
   }
 }
 
-void AddTruth(Hash& hash, const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
+void AddVector(ContentHash& hash, const glm::dvec3& v) {
+  hash.Value(v.x);
+  hash.Value(v.y);
+  hash.Value(v.z);
+}
+
+void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
   hash.Value(kVersion);
   hash.Value(options.tolerance);
   hash.Value(pixels.width);
   hash.Value(pixels.height);
-  hash.Vector(glm::dvec3(pixels.view_position));
+  AddVector(hash, glm::dvec3(pixels.view_position));
   if (scene.brdf != Brdf::kGgx) hash.Value(scene.brdf);  // left out, the default's truths keep their names
   for (const Light& light : scene.lights) {
     hash.Value(light.shape);
     hash.Value(light.two_sided);
-    hash.Vector(light.center);
-    hash.Vector(light.axis_x);
-    hash.Vector(light.axis_y);
-    hash.Vector(light.normal);
+    AddVector(hash, light.center);
+    AddVector(hash, light.axis_x);
+    AddVector(hash, light.axis_y);
+    AddVector(hash, light.normal);
     hash.Value(light.half_size.x);
     hash.Value(light.half_size.y);
-    hash.Vector(light.radiance);
+    AddVector(hash, light.radiance);
   }
   hash.Bytes(pixels.position.data(), pixels.position.size() * sizeof(glm::vec4));
   hash.Bytes(pixels.normal.data(), pixels.normal.size() * sizeof(glm::vec4));
@@ -175,14 +144,14 @@ void AddTruth(Hash& hash, const Scene& scene, const SurfacePixels& pixels, const
 }  // namespace
 
 std::string TruthKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
-  Hash hash;
+  ContentHash hash;
   AddTruth(hash, scene, pixels, options);
-  return hash.Text();
+  return hash.Name();
 }
 
 std::string ShadowKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& truth_options,
                       const ShadowOptions& options) {
-  Hash hash;
+  ContentHash hash;
   AddTruth(hash, scene, pixels, truth_options);
   hash.Value(kShadowVersion);
   hash.Value(options.tolerance);
@@ -195,7 +164,7 @@ std::string ShadowKey(const Scene& scene, const SurfacePixels& pixels, const Tru
     }
     hash.Bytes(mesh.indices.data(), mesh.indices.size() * sizeof mesh.indices[0]);
   }
-  return hash.Text();
+  return hash.Name();
 }
 
 CachedPicture CachedBands(const SurfacePixels& pixels, const std::string& key,

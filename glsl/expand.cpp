@@ -104,6 +104,11 @@ class Expander {
     EmitHost("#define INOUT(type) inout type");
     EmitHost("#define assert(condition)");
     for (const auto& [name, value] : effects) EmitHost(fmt::format("#define {} {}", name, value));
+    // Which answers to assume: none but where the host asks (glsl/lit.glsl, glsl/path.glsl).
+    for (const std::string_view path : {"PATH_LIT", "PATH_ABOVE", "PATH_CROSSING", "PATH_BELOW"}) {
+      const auto named = [&](const auto& effect) { return effect.first == path; };
+      if (std::none_of(effects.begin(), effects.end(), named)) EmitHost(fmt::format("#define {} 0", path));
+    }
     if (!variant_.technique) return;
     for (const Option& option : variant_.technique->options) {
       for (const Choice& choice : option.choices) {

@@ -8,6 +8,7 @@
 //   μ³ + bμ² + kμ − D² = 0,   |F| = D/√(μ²(2μ + b) + D²),   F ∥ adj(μI + B) C = μ((μ + tr B) C − B C) + adj(B) C.
 // Form factors do not depend on lengths: all of this is scaled by 1/(|C|² + tr B), so that nothing overflows.
 #include "ltc.glsl"
+#include "path.glsl"
 
 // The adjugate's transpose of M⁻¹: it takes normals to normals. M⁻¹ as in ltc.glsl.
 vec3 LtcAdjoint(vec4 m, vec3 v) { return vec3(m.w * v.x - m.y * v.z, (m.x * m.w - m.y * m.z) * v.y, m.x * v.z - m.z * v.x); }
@@ -178,7 +179,8 @@ vec3 ClippedConeVector(LightCone cone) {
   ConeVector whole = VectorOfCone(cone);
   float height = whole.size * whole.axis.z;
   // The horizon is a tangent plane of the cone or misses it.
-  if (cone.center.z * cone.center.z >= cone.half_a.z * cone.half_a.z + cone.half_b.z * cone.half_b.z) return whole.axis * (cone.center.z > 0.0 ? whole.size : 0.0);
+  bool one_side = cone.center.z * cone.center.z >= cone.half_a.z * cone.half_a.z + cone.half_b.z * cone.half_b.z;
+  if (WhollyOnOneSide(one_side)) return whole.axis * (cone.center.z > 0.0 ? whole.size : 0.0);
 
   // G across e3, over a horizontal axis u and an upward one v, turned to its own axes; −ma ≤ −mb are its eigenvalues.
   vec3 e3 = whole.axis;

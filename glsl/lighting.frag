@@ -2,11 +2,12 @@
 #include "surface.glsl"
 #include "platform"
 #include "lights.glsl"
+#include "lit.glsl"
 #include "technique"
 
 void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
   Light light = LoadLight(i);
-  if (!FaceLight(light, surface.position)) return;
+  if (!Lit(FaceLight(light, surface.position))) return;
   Radiance radiance = ShadeLight(surface, light, to_view);
   // What is not added here is dead code, and the compiler drops it from the technique.
 #if EFFECT_DIFFUSE
@@ -22,12 +23,12 @@ void main() {
   vec3 diffuse = vec3(0.0);
   vec3 specular = vec3(0.0);
   vec4 position = FetchPosition(pixel);
-  if (position.w == 1.0) {
+  if (Lit(position.w == 1.0)) {
     vec4 normal = FetchNormal(pixel);
     vec4 base_color = FetchBaseColor(pixel);
     vec3 to_view = normalize(ViewPosition() - position.xyz);
     // A face turned away from the viewer is black.
-    if (dot(normal.xyz, to_view) > 0.0) {
+    if (Lit(dot(normal.xyz, to_view) > 0.0)) {
       Surface surface;
       surface.position = position.xyz;
       surface.normal = normal.xyz;

@@ -64,6 +64,7 @@ struct Renderer::Impl {
   GlObject framebuffer, diffuse, specular;
   std::unordered_map<std::string, std::unique_ptr<Program>> programs;  // by their whole text
   std::map<std::string, Table> tables;                                 // by their name in the library
+  std::unique_ptr<Program> through;
   std::map<std::pair<std::string, Precision>, Pass> passes;            // of this scene, by the variant's name
 };
 
@@ -232,6 +233,15 @@ void Renderer::Draw(const Variant& variant, Precision precision, const std::map<
     impl_->SetKnobs(found->second, variant, knobs);
     impl_->DrawPass(found->second);
   }
+  impl_->gl.Finish();
+}
+
+void Renderer::DrawThrough() {
+  if (!impl_->through) {
+    const ExpandedSource source = Expand(impl_->library, "through.frag", {}, impl_->effects, Precision::kFloat);
+    impl_->through = std::make_unique<Program>(impl_->gl, impl_->fullscreen, source);
+  }
+  impl_->DrawPass({impl_->through.get(), {}});
   impl_->gl.Finish();
 }
 

@@ -41,6 +41,9 @@ class Renderer {
   void Draw(const Variant& variant, Precision precision = Precision::kFloat,
             const std::map<std::string, double>& knobs = {});
 
+  // Draws a pass that reads the G-buffer and writes it through, for a clock: what every lighting pass pays beside shading.
+  void DrawThrough();
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -1,6 +1,7 @@
 // Exact horizon clipping by a case for each of the 16 sets of corners above the horizon [Hill & Heitz 2016, "ClipQuadToHorizon"].
 // The print has lost parts of it: all cases are derived anew. Dual; after an "edge".
 #include "edge_vector.glsl"
+#include "path.glsl"
 
 // The vector form factor of what is above the horizon. Of the parallelogram center ± half_a ± half_b with half_a × half_b towards
 // the origin.
@@ -15,6 +16,7 @@ vec3 ClippedCorners(vec3 center, vec3 half_a, vec3 half_b, bool lambert) {
   if (p1.z > 0.0) above += 2;
   if (p2.z > 0.0) above += 4;
   if (p3.z > 0.0) above += 8;
+  above = CornersAbove(above);
 
   vec3 v0 = p0;
   vec3 v1 = p1;

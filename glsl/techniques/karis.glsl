@@ -37,6 +37,7 @@ widening = "half"
 falloff = "windowed"
 ---*/
 #include "specular_lobe.glsl"
+#include "lit.glsl"
 
 #if WIDENING_HALF
 const float kWidening = 1.0 / 2.0;
@@ -53,7 +54,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   float distance2 = max(dot(to_center, to_center), radius * radius);  // inside it is as on the sphere
   float inverse_distance = inversesqrt(distance2);
   float n_dot_l = dot(surface.normal, to_center) * inverse_distance;
-  if (n_dot_l <= 0.0) return result;
+  if (!Lit(n_dot_l > 0.0)) return result;
 
 #if FALLOFF_WINDOWED
   float share2 = distance2 / (knob_influence * knob_influence);

@@ -44,6 +44,8 @@ edge = "acos"
 #include "clip"
 #include "specular_lobe.glsl"
 #include "vector_form_factor.glsl"
+#include "lit.glsl"
+#include "path.glsl"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   Radiance result;
@@ -54,9 +56,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   // The early test: how far the centre is above the horizon, against how far the corners reach.
   float reach = abs(view.half_a.z) + abs(view.half_b.z);
-  if (view.center.z < -reach) return result;
+  if (WhollyBelow(view.center.z < -reach)) return result;
   vec3 field;  // vector irradiance over π·radiance, world
-  if (view.center.z > reach) {
+  if (WhollyAbove(view.center.z > reach)) {
     vec3 f = LambertVector(view).f;
     field = light.axis_x * f.x + light.axis_y * f.y + light.normal * f.z;
   } else {
@@ -65,7 +67,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   }
 
   float size2 = dot(field, field);
-  if (size2 < 1e-36) return result;  // (1e-9 of the sky)²: no direction is left in float
+  if (!Lit(size2 >= 1e-36)) return result;  // (1e-9 of the sky)²: no direction is left in float
   vec3 to_light = field * inversesqrt(size2);
 #if VECTOR_UNIT
   field = to_light;

@@ -46,6 +46,7 @@ coupling = "none"
 #include "solid_angle.glsl"
 #include "specular_albedo.glsl"
 #include "vector_form_factor.glsl"
+#include "lit.glsl"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   Radiance result;
@@ -61,7 +62,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ClippedRectangle clipped = ClipToRectangle(point, normal, light.half_size);
   vec2 center = 0.5 * (clipped.low + clipped.high);
   vec2 half_size = max(0.5 * (clipped.high - clipped.low), vec2(0.0));
-  if (half_size.x * half_size.y <= 1e-8 * light.area) return result;
+  if (!Lit(half_size.x * half_size.y > 1e-8 * light.area)) return result;
   vec3 from_center = point - vec3(center, 0.0);
   vec3 to_center = -from_center * inversesqrt(dot(from_center, from_center));
 
@@ -89,7 +90,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   float n_dot_v = clamp(dot(surface.normal, to_view), 0.0, 1.0);
   vec3 mirror = normal * (2.0 * dot(normal, view)) - view;
   Footprint cone = ConeFootprint(from_center, mirror, EnergyConeVersine(surface.alpha, n_dot_v), true);
-  if (cone.radius <= 0.0) return result;
+  if (!Lit(cone.radius > 0.0)) return result;
   vec2 nearest = ClosestOnRectangle(cone.center, half_size);
   float outside = min(length(cone.center - nearest) / cone.radius, 1.0);
   float fade = 1.0 - outside * outside * (3.0 - 2.0 * outside);

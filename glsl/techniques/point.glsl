@@ -10,6 +10,7 @@ exact = ["point_limit"]
 ---*/
 #include "surface.glsl"
 #include "brdf.glsl"
+#include "lit.glsl"
 #include "brdf"
 
 // m²: below it no float position tells the centre from the point; there the direction is 0 and so is the radiance.
@@ -21,7 +22,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   float distance2 = max(dot(to_center, to_center), kMinDistance2);
   vec3 to_light = to_center * inversesqrt(distance2);
   float n_dot_l = dot(surface.normal, to_light);
-  if (n_dot_l <= 0.0) return radiance;
+  if (!Lit(n_dot_l > 0.0)) return radiance;
 
   // Intensity L·A·cosθ_l, W/sr; area is a sphere's cross-section and a sphere has no cosine.
   float cos_light = light.shape == SHAPE_SPHERE ? 1.0 : max(-dot(light.normal, to_light), 0.0);

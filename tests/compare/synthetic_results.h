@@ -242,10 +242,11 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
         std::make_shared<RadianceImage>(Shade(style, named.flaw, size.width, size.height, nullptr));
     Measure(*truth, flip ? &reference : nullptr, &variant);
     variant.within_truth_error = variant.total.rel_rmse < 4.0 * scene.truth_relative_error;
-    variant.time.ratio_to_point = named.ratio;
-    variant.time.ratio_low = named.ratio * 0.97;
-    variant.time.ratio_high = named.ratio * 1.04;
-    variant.time.ns_per_pixel = 8.0 * named.ratio;
+    const auto around = [](double value) { return Estimate{value, 0.97 * value, 1.04 * value}; };
+    variant.time.ratio_to_point = around(named.ratio);
+    variant.time.ns_per_pixel = around(8.0 * named.ratio);
+    variant.time.net_ns_per_pixel = around(8.0 * named.ratio - 5.0);
+    variant.time.net_ratio_to_point = around((8.0 * named.ratio - 5.0) / 3.0);
     variant.time.rounds = 9;
     scene.variants.push_back(variant);
   }

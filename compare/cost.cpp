@@ -1,0 +1,353 @@
+#include "compare/cost.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <sstream>
+#include <thread>
+
+#include "compare/content_hash.h"
+#include "compare/subprocess.h"
+#include "glsl/effects.h"
+#include "glsl/expand.h"
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Changes whenever the harness, the compilers' options or the cache's layout change.
+constexpr int kVersion = 1;
+
+constexpr std::array kGpus = {"tahiti",   "pitcairn", "verde",  "bonaire", "hawaii", "tonga",  "fiji",    "polaris10",
+                              "polaris11", "polaris12", "vega10", "vega12",  "vega20", "raven",  "renoir",  "navi10",
+                              "navi12",   "navi14",   "navi21", "navi22",  "navi23", "vangogh", "gfx1100", "gfx1101", "gfx1102"};
+
+constexpr std::array kPaths = {"above", "crossing", "below"};
+
+std::string Or(const char* variable, std::string otherwise) {
+  const char* value = std::getenv(variable);
+  return value != nullptr && *value != '\0' ? value : std::move(otherwise);
+}
+
+std::string FirstLine(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+// RADV's manifest where the Vulkan loader looks for it, or nothing.
+std::string FindDriver() {
+  for (const char* folder : {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("radeon_icd") && name.ends_with(".json")) return entry.path().string();
+    }
+  }
+  return "";
+}
+
+void Append(std::vector<char>& bytes, std::span<const char> more) {
+  bytes.insert(bytes.end(), more.begin(), more.end());
+}
+
+void Append(std::vector<char>& bytes, std::size_t count) {
+  const auto word = static_cast<std::uint32_t>(count);
+  Append(bytes, std::span(reinterpret_cast<const char*>(&word), sizeof word));
+}
+
+// A line of the worker's.
+bool Parse(const std::string& line, ShaderCost& cost) {
+  std::istringstream in(line);
+  in >> cost.instructions >> cost.cycles >> cost.vgprs >> cost.sgprs >> cost.spills >> cost.branches >> cost.bytes;
+  return static_cast<bool>(in);
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+// A shader to compile and what is found for it.
+struct CostMeter::Text {
+  ExpandedSource source;
+  bool vertex = false;
+  int targets = 1;
+  std::string who;  // for messages
+};
+
+struct CostMeter::Job {
+  const Text* text;
+  const std::vector<char>* words;  // SPIR-V
+  const std::vector<char>* vertex;
+  ShaderCost* cost;
+};
+
+std::span<const char* const> GpuNames() {
+  return kGpus;
+}
+
+void CheckGpuNames(const std::vector<std::string>& gpus) {
+  for (const std::string& gpu : gpus) {
+    if (std::find(kGpus.begin(), kGpus.end(), gpu) != kGpus.end()) continue;
+    throw InputError(fmt::format("no GPU \"{}\"; expected of {} (others crash the driver's null device)", gpu,
+                                 fmt::join(kGpus, ", ")));
+  }
+}
+
+double MillisecondsAt1080p(const std::string& gpu, double cycles) {
+  if (gpu != "bonaire") return kNotMeasured;
+  constexpr double kWaves = 1920.0 * 1080.0 / 64.0, kSimds = 18.0 * 4.0, kHertz = 0.8e9;
+  return 1e3 * cycles * kWaves / kSimds / kHertz;
+}
+
+CostTools CostTools::FromEnvironment() {
+  const CostTools usual;
+  return {Or("AREALAB_GLSLANG", usual.glslang), Or("AREALAB_VULKAN", usual.vulkan), Or("AREALAB_RADV", FindDriver())};
+}
+
+CostMeter::CostMeter(std::vector<std::string> gpus, fs::path cache, CostTools tools)
+    : gpus_(std::move(gpus)), cache_(std::move(cache)), tools_(std::move(tools)) {
+  CheckGpuNames(gpus_);
+  const ProcessResult glslang = RunProcess({tools_.glslang, "--version"}, {}, {});
+  if (!glslang.started || glslang.status != 0) {
+    throw InputError(fmt::format("{} does not run; expected Debian's package glslang-tools", tools_.glslang));
+  }
+  std::error_code none;
+  if (tools_.driver.empty() || !fs::exists(tools_.driver, none)) {
+    throw InputError(fmt::format("no AMD Vulkan driver ({}); expected Debian's package mesa-vulkan-drivers",
+                                 tools_.driver.empty() ? "radeon_icd.*.json" : tools_.driver));
+  }
+  worker_ = (fs::read_symlink("/proc/self/exe", none).parent_path() / "arealab_isa").string();
+  const ProcessResult driver = RunProcess({worker_}, WorkerEnvironment(kGpus.front()), {});
+  if (!driver.started) throw InputError(fmt::format("{} does not run; expected it beside the program", worker_));
+  if (driver.status != 0) {
+    throw InputError(fmt::format("{}; expected Debian's packages libvulkan1 and mesa-vulkan-drivers",
+                                 driver.signal != 0 ? fmt::format("the Vulkan driver ends with signal {}", driver.signal)
+                                                    : FirstLine(driver.messages)));
+  }
+  const std::string version = FirstLine(glslang.messages);  // "Glslang Version: 11:12.0.0"
+  compilers_ = fmt::format("{} by glslang {}", FirstLine(driver.data), version.substr(version.rfind(' ') + 1));
+}
+
+std::vector<std::pair<std::string, std::string>> CostMeter::WorkerEnvironment(const std::string& gpu) const {
+  return {{"RADV_FORCE_FAMILY", gpu},       {"VK_ICD_FILENAMES", tools_.driver},
+          {"VK_DRIVER_FILES", ""},          {"AREALAB_VULKAN", tools_.vulkan},
+          {"VK_INSTANCE_LAYERS", ""},       {"MESA_SHADER_CACHE_DISABLE", "true"},
+          {"RADV_DEBUG", ""},               {"RADV_PERFTEST", ""},
+          {"ACO_DEBUG", ""},                {"NIR_DEBUG", ""}};
+}
+
+// Loose uniforms are gathered in a block; samplers keep 0 to 15, uniform blocks move to 16 and on: else they collide silently.
+std::vector<char> CostMeter::Translate(const Text& text) const {
+  const ProcessResult result =
+      RunProcess({tools_.glslang, "--stdin", "-S", text.vertex ? "vert" : "frag", "-V", "--target-env", "vulkan1.1", "-R",
+                  "--amb", "--aml", "--sub", "16", "--sbb", "32", "--sib", "48", "-o", "/proc/self/fd/3"},
+                 {}, text.source.text);
+  if (result.status == 0 && !result.data.empty()) return {result.data.begin(), result.data.end()};
+  std::string messages;
+  const std::string mark = "ERROR: stdin:";  // as drivers write it: "ERROR: 0:"
+  for (const std::string& line : Lines(result.messages)) {
+    messages += line.starts_with(mark) ? fmt::format("ERROR: 0:{}\n", line.substr(mark.size())) : line + "\n";
+  }
+  for (const std::string& line : Lines(text.source.RewriteLog(messages))) {
+    if (line.find(": error: ") == std::string::npos) continue;
+    throw InputError(fmt::format("{} ({}, as SPIR-V); expected text that glslang compiles", line, text.who));
+  }
+  throw InputError(fmt::format("{}: glslang ends with status {}; expected SPIR-V", text.who, result.status));
+}
+
+fs::path CostMeter::CacheFile(const Text& text, const Text& vertex, const std::string& gpu) const {
+  ContentHash hash;
+  hash.Value(kVersion);
+  hash.Text(compilers_);
+  hash.Text(gpu);
+  hash.Value(text.targets);
+  hash.Text(vertex.source.text);
+  hash.Text(text.source.text);
+  return cache_ / (hash.Name() + ".isa");
+}
+
+void CostMeter::Compile(std::span<const Job> jobs, const std::string& gpu) const {
+  if (jobs.empty()) return;
+  std::vector<char> input;
+  for (const Job& job : jobs) {
+    Append(input, static_cast<std::size_t>(job.text->targets));
+    Append(input, job.vertex->size() / sizeof(std::uint32_t));
+    Append(input, job.words->size() / sizeof(std::uint32_t));
+    Append(input, *job.vertex);
+    Append(input, *job.words);
+  }
+  const ProcessResult result = RunProcess({worker_}, WorkerEnvironment(gpu), input);
+  const std::vector<std::string> lines = Lines(result.data);
+  std::size_t done = 0;
+  while (done < jobs.size() && done + 1 < lines.size() && Parse(lines[done + 1], *jobs[done].cost)) ++done;
+  if (done == jobs.size() && result.status == 0) return;
+  const std::string what = result.signal != 0 ? fmt::format("the driver ends with signal {} ({})", result.signal,
+                                                            strsignal(result.signal))
+                                              : FirstLine(result.messages);
+  throw InputError(fmt::format("{}, {}: {}; expected figures for it", gpu, jobs[std::min(done, jobs.size() - 1)].text->who, what));
+}
+
+std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibrary& library,
+                                                               const std::vector<Variant>& variants, const Scene& scene,
+                                                               const std::function<void(double)>& progress) const {
+  // Every text once, with the places that its figures go to.
+  struct Entry {
+    Text text;
+    std::vector<char> words;
+    std::vector<ShaderCost> costs;  // by GPU
+    std::vector<fs::path> files;
+    bool known = true;
+    std::vector<std::pair<std::size_t, std::string>> places;  // variant, "core", "full" or a path
+  };
+  auto lit = SceneEffects(scene);
+  lit.emplace_back("PATH_LIT", 1);
+  const Text vertex{Expand(library, "core.vert", {}, {}, Precision::kFloat), true, 0, "core.vert"};
+  std::vector<Entry> entries;
+  std::map<std::string, std::size_t> index;  // by text
+  const auto add = [&](std::size_t v, const std::string& place, const std::string& main, int targets,
+                       const std::vector<std::pair<std::string, int>>& defines) -> const std::string& {
+    Text text{Expand(library, main, variants[v], defines, Precision::kFloat, scene.brdf), false, targets,
+              fmt::format("{} ({})", variants[v].ShortName(), place)};
+    const auto [at, added] = index.emplace(text.source.text, entries.size());
+    if (added) entries.push_back({std::move(text), {}, {}, {}, true, {}});
+    entries[at->second].places.emplace_back(v, place);
+    return at->first;
+  };
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    if (WhyUnsupported(variants[v], scene)) continue;
+    add(v, "full", "lighting.frag", 2, lit);
+    if (add(v, "core", "core.frag", 1, lit).find("#if PATH_ABOVE") == std::string::npos) continue;
+    for (const std::string path : kPaths) {
+      auto defines = lit;
+      std::string name = "PATH_" + path;
+      for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+      defines.emplace_back(name, 1);
+      add(v, path, "core.frag", 1, defines);
+    }
+  }
+
+  for (Entry& entry : entries) {
+    entry.costs.resize(gpus_.size());
+    for (std::size_t g = 0; g < gpus_.size(); ++g) {
+      entry.files.push_back(CacheFile(entry.text, vertex, gpus_[g]));
+      std::ifstream in(entry.files.back());
+      std::string line;
+      entry.known = std::getline(in, line) && Parse(line, entry.costs[g]) && entry.known;
+    }
+  }
+  std::vector<Entry*> missing;
+  for (Entry& entry : entries) {
+    if (!entry.known) missing.push_back(&entry);
+  }
+  if (!missing.empty()) {
+    std::mutex mutex;
+    std::size_t done = 0;
+    const std::size_t all = missing.size() * (1 + gpus_.size());
+    const auto report = [&](std::size_t count) {
+      const std::lock_guard lock(mutex);
+      done += count;
+      if (progress) progress(static_cast<double>(done) / static_cast<double>(all));
+    };
+    const std::vector<char> vertex_words = Translate(vertex);
+    tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
+      missing[i]->words = Translate(missing[i]->text);
+      report(1);
+    });
+    // A batch is a process, which costs a fifth of a second to start.
+    constexpr std::size_t kBatch = 12;
+    const std::size_t batches = (missing.size() + kBatch - 1) / kBatch;
+    tbb::parallel_for(std::size_t{0}, batches * gpus_.size(), [&](std::size_t i) {
+      const std::size_t g = i / batches, first = i % batches * kBatch, last = std::min(first + kBatch, missing.size());
+      std::vector<Job> jobs;
+      for (std::size_t m = first; m < last; ++m) {
+        jobs.push_back({&missing[m]->text, &missing[m]->words, &vertex_words, &missing[m]->costs[g]});
+      }
+      Compile(jobs, gpus_[g]);
+      for (std::size_t m = first; m < last; ++m) Store(missing[m]->files[g], missing[m]->costs[g]);
+      report(last - first);
+    });
+  }
+
+  std::vector<std::map<std::string, GpuCost>> found(variants.size());
+  for (const Entry& entry : entries) {
+    for (const auto& [v, place] : entry.places) {
+      for (std::size_t g = 0; g < gpus_.size(); ++g) {
+        GpuCost& cost = found[v][gpus_[g]];
+        (place == "core" ? cost.core : place == "full" ? cost.full : cost.paths[place]) = entry.costs[g];
+      }
+    }
+  }
+  for (auto& costs : found) {
+    for (auto& [gpu, cost] : costs) {
+      // The text may ask and the shape of the light not.
+      const bool same = std::all_of(cost.paths.begin(), cost.paths.end(), [&](const auto& path) { return path.second == cost.core; });
+      if (same) cost.paths.clear();
+    }
+  }
+  return found;
+}
+
+// Under a name of its own, then renamed. A folder that cannot be written to costs the storing, not the figures.
+void CostMeter::Store(const fs::path& file, const ShaderCost& cost) {
+  static std::atomic<unsigned> serial{0};
+  std::error_code ignored;
+  fs::create_directories(file.parent_path(), ignored);
+  fs::path part = file;
+  part += fmt::format(".{}-{}.tmp", ::getpid(), serial++);
+  std::ofstream out(part, std::ios::trunc);
+  out << fmt::format("{} {} {} {} {} {} {}\n", cost.instructions, cost.cycles, cost.vgprs, cost.sgprs, cost.spills,
+                     cost.branches, cost.bytes);
+  out.close();
+  if (out) fs::rename(part, file, ignored);
+  fs::remove(part, ignored);
+}
+
+Scene SceneOfEffects(const std::vector<std::string>& effects) {
+  constexpr std::array kNames = {"rectangle", "disk", "sphere", "two_sided", "diffuse", "specular", "fresnel", "many_lights"};
+  for (const std::string& effect : effects) {
+    if (std::find(kNames.begin(), kNames.end(), effect) == kNames.end()) {
+      throw InputError(fmt::format("no effect \"{}\"; expected of {}", effect, fmt::join(kNames, ", ")));
+    }
+  }
+  const auto has = [&](const char* effect) { return std::find(effects.begin(), effects.end(), effect) != effects.end(); };
+  Scene scene;
+  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
+    if (has(Name(shape))) scene.lights.emplace_back().shape = shape;
+  }
+  if (!scene.lights.empty()) {
+    if (has("many_lights") && scene.lights.size() == 1) scene.lights.push_back(scene.lights[0]);
+    scene.lights[0].two_sided = has("two_sided");
+  }
+  Material material;
+  material.metalness = has("diffuse") ? 0.0f : 1.0f;
+  if (!has("fresnel")) material.base_color = glm::vec3(1.0f);
+  scene.materials.push_back(material);
+  // The scene may call for more than was asked for: a second shape is a second light.
+  for (const auto& [define, on] : SceneEffects(scene)) {
+    std::string name = define.substr(define.find('_') + 1);
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if ((on != 0) != has(name.c_str())) {
+      throw InputError(fmt::format("--effects {}: no scene has these {} {}; expected e.g. rectangle,diffuse,specular,fresnel",
+                                   fmt::join(effects, ","), on != 0 ? "without" : "with", name));
+    }
+  }
+  return scene;
+}
+
+}  // namespace arealab
