@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "glsl/dual_begin.h"
+#include "glsl/path.glsl"
 #include "glsl/polygon.glsl"
 namespace half_angle {
 #include "glsl/edge/half_angle.glsl"
