@@ -41,5 +41,6 @@ void AddList(CLI::App& app, int& status);
 void AddFit(CLI::App& app, int& status);
 void AddCheck(CLI::App& app, int& status);
 void AddCost(CLI::App& app, int& status);
+void AddView(CLI::App& app, int& status);
 
 }  // namespace arealab

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   arealab::AddFit(app, status);
   arealab::AddCheck(app, status);
   arealab::AddCost(app, status);
+  arealab::AddView(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

@@ -305,11 +305,15 @@ void WritePng(const std::filesystem::path& file, std::span<const glm::vec3> radi
       pixels.insert(pixels.end(), {255, 0, 255});
     }
   }
-  const int height = static_cast<int>(radiance.size() / static_cast<std::size_t>(width));
+  WritePngCodes(file, pixels, width);
+}
+
+void WritePngCodes(const std::filesystem::path& file, std::span<const std::uint8_t> codes, int width) {
+  const int height = static_cast<int>(codes.size() / (3 * static_cast<std::size_t>(width)));
   OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("png:compressionLevel", 6);
-  WriteFile(file, spec, pixels.data());
+  WriteFile(file, spec, codes.data());
 }
 
 std::vector<glm::vec3> Picture(const RadianceImage& image, std::span<const glm::vec3> emission) {

@@ -53,6 +53,9 @@ RadianceImage ReadExr(const std::filesystem::path& file);
 void WritePng(const std::filesystem::path& file, std::span<const glm::vec3> radiance, int width,
               double exposure);
 
+// The same of codes that are chosen already: R, G, B per pixel, row 0 the top.
+void WritePngCodes(const std::filesystem::path& file, std::span<const std::uint8_t> codes, int width);
+
 // What a picture shows: diffuse + specular + the emitters (`emission` may be empty).
 std::vector<glm::vec3> Picture(const RadianceImage& image, std::span<const glm::vec3> emission);
 

@@ -46,9 +46,12 @@ struct Renderer::Impl {
   Pass MakePass(const Variant& variant, Precision precision);
   GLuint LoadTable(const Variant& variant, const arealab::Table& table);
   void SetKnobs(const Pass& pass, const Variant& variant, const std::map<std::string, double>& knobs) const;
-  void DrawPass(const Pass& pass) const;
+  const Pass& KeptPass(const Variant& variant, Precision precision);
+  void DrawPass(const Pass& pass) const { DrawPass(pass, 0, size.y); }
+  void DrawPass(const Pass& pass, int first_row, int rows) const;
   void Black() const;
   std::vector<glm::vec3> ReadBack(const GlObject& texture) const;
+  void ReadBack(const GlObject& texture, int first_row, int row_count, std::vector<glm::vec3>& image) const;
 
   const GladGLContext& gl;
   const ShaderLibrary& library;
@@ -143,7 +146,14 @@ void Renderer::Impl::Black() const {
   for (GLint i = 0; i < 2; ++i) gl.ClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, i, black.data());
 }
 
-void Renderer::Impl::DrawPass(const Pass& pass) const {
+const Renderer::Impl::Pass& Renderer::Impl::KeptPass(const Variant& variant, Precision precision) {
+  const std::pair key{variant.Name(), precision};
+  if (const auto found = passes.find(key); found != passes.end()) return found->second;
+  Pass pass = MakePass(variant, precision);  // before it has a place: making one may clear the others
+  return passes.emplace(key, std::move(pass)).first->second;
+}
+
+void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) const {
   pass.program->Set("view_position", gbuffer.pixels().view_position);
   pass.program->Set("light_count", light_count);
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
@@ -162,27 +172,38 @@ void Renderer::Impl::DrawPass(const Pass& pass) const {
     gl.BindTextureUnit(kFirstTableUnit + static_cast<GLuint>(i), pass.tables[i]);
   }
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, lights.id());
+  const bool part = rows < size.y;
+  if (part) {
+    gl.Enable(GL_SCISSOR_TEST);
+    gl.Scissor(0, first_row, size.x, rows);
+  }
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  if (part) gl.Disable(GL_SCISSOR_TEST);
   gl.UseProgram(0);  // a program in use would outlive its object
   gl.BindVertexArray(0);
   gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 std::vector<glm::vec3> Renderer::Impl::ReadBack(const GlObject& texture) const {
+  std::vector<glm::vec3> image(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+  ReadBack(texture, 0, size.y, image);
+  return image;
+}
+
+void Renderer::Impl::ReadBack(const GlObject& texture, int first_row, int row_count, std::vector<glm::vec3>& image) const {
   const auto width = static_cast<std::size_t>(size.x);
-  std::vector<glm::vec3> image(width * static_cast<std::size_t>(size.y));
   // RGBA is what drivers copy without thinking; a band at a time keeps the detour small.
   const int band = std::max(1, (1 << 20) / size.x);
-  std::vector<glm::vec4> texels(width * static_cast<std::size_t>(std::min(band, size.y)));
-  for (int y = 0; y < size.y; y += band) {
-    const int rows = std::min(band, size.y - y);
+  std::vector<glm::vec4> texels(width * static_cast<std::size_t>(std::min(band, row_count)));
+  const int end = first_row + row_count;
+  for (int y = first_row; y < end; y += band) {
+    const int rows = std::min(band, end - y);
     gl.GetTextureSubImage(texture.id(), 0, 0, y, 0, size.x, rows, 1, GL_RGBA, GL_FLOAT,
                           static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
     const std::size_t count = width * static_cast<std::size_t>(rows);
     const std::size_t first = width * static_cast<std::size_t>(y);
     for (std::size_t i = 0; i < count; ++i) image[first + i] = glm::vec3(texels[i]);
   }
-  return image;
 }
 
 Renderer::Renderer(const GladGLContext& gl, const ShaderLibrary& library)
@@ -190,7 +211,8 @@ Renderer::Renderer(const GladGLContext& gl, const ShaderLibrary& library)
 
 Renderer::~Renderer() = default;
 
-const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size) {
+const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
+                                         const std::set<std::string>& effects_off) {
   const std::vector<Light> lights = EmittingLights(scene);
   const std::vector<glm::vec4> rows = LightBlockRows(lights);
   impl_->gbuffer.Draw(scene, size);
@@ -201,6 +223,9 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size) {
   impl_->scene.lights = scene.lights;
   impl_->scene.materials = scene.materials;
   impl_->effects = SceneEffects(scene);
+  for (auto& [name, value] : impl_->effects) {
+    if (effects_off.contains(name)) value = 0;
+  }
   impl_->passes.clear();
   impl_->gl.NamedBufferSubData(impl_->lights.id(), 0,
                                static_cast<GLsizeiptr>(rows.size() * sizeof(glm::vec4)), rows.data());
@@ -220,18 +245,28 @@ RadianceImage Renderer::Shade(const Variant& variant, Precision precision,
   return {impl_->size.x, impl_->size.y, impl_->ReadBack(impl_->diffuse), impl_->ReadBack(impl_->specular)};
 }
 
+void Renderer::ShadeRows(const Variant& variant, const std::map<std::string, double>& knobs, int first, int count,
+                         RadianceImage& image) {
+  if (image.width != impl_->size.x || image.height != impl_->size.y) {
+    const auto pixels = static_cast<std::size_t>(impl_->size.x) * static_cast<std::size_t>(impl_->size.y);
+    image = {impl_->size.x, impl_->size.y, std::vector<glm::vec3>(pixels, glm::vec3(0.0f)),
+             std::vector<glm::vec3>(pixels, glm::vec3(0.0f))};
+  }
+  if (impl_->light_count == 0) return;
+  const Impl::Pass& pass = impl_->KeptPass(variant, Precision::kFloat);
+  impl_->SetKnobs(pass, variant, knobs);
+  impl_->DrawPass(pass, first, count);
+  impl_->ReadBack(impl_->diffuse, first, count, image.diffuse);
+  impl_->ReadBack(impl_->specular, first, count, image.specular);
+}
+
 void Renderer::Draw(const Variant& variant, Precision precision, const std::map<std::string, double>& knobs) {
   if (impl_->light_count == 0) {
     impl_->Black();
   } else {
-    const std::pair key{variant.Name(), precision};
-    auto found = impl_->passes.find(key);
-    if (found == impl_->passes.end()) {
-      Impl::Pass pass = impl_->MakePass(variant, precision);  // before it has a place: making one may clear the others
-      found = impl_->passes.emplace(key, std::move(pass)).first;
-    }
-    impl_->SetKnobs(found->second, variant, knobs);
-    impl_->DrawPass(found->second);
+    const Impl::Pass& pass = impl_->KeptPass(variant, precision);
+    impl_->SetKnobs(pass, variant, knobs);
+    impl_->DrawPass(pass);
   }
   impl_->gl.Finish();
 }

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "glsl/effects.h"
@@ -27,13 +28,20 @@ class Renderer {
 
   // Rasterises the scene into the float G-buffer; it stays the one that Shade reads until the next call.
   // Throws InputError where the size is not positive or too large, or the scene has too many lights.
-  const SurfacePixels& DrawScene(const Scene& scene, glm::ivec2 size);
+  // `effects_off` are shaded as if the scene did not call for them: names from SceneEffects.
+  const SurfacePixels& DrawScene(const Scene& scene, glm::ivec2 size, const std::set<std::string>& effects_off = {});
 
   // Compiles (once per content) and runs the lighting pass. Throws InputError with the author's file and line
   // where the text does not compile, where a table or a knob does not exist, and where the variant does not
   // support the scene. `knobs` override the header's initial values by name.
   RadianceImage Shade(const Variant& variant, Precision precision = Precision::kFloat,
                       const std::map<std::string, double>& knobs = {});
+
+  // Shade's rows [first, first + count) alone, for work that must be able to stop: fills them in `image`, which is made
+  // black and as large as the scene's picture where it is not. Like Draw it looks at a variant's files once after
+  // DrawScene.
+  void ShadeRows(const Variant& variant, const std::map<std::string, double>& knobs, int first, int count,
+                 RadianceImage& image);
 
   // Draws the pass for `variant` once more without reading it back, for a clock; ends with glFinish. After a
   // Shade of the same variant since DrawScene it uses that program without looking at the files again, so

@@ -253,8 +253,7 @@ class SceneReader {
   explicit SceneReader(const fs::path& file)
       : file_(file), folder_(file.has_parent_path() ? file.parent_path() : ".") {}
 
-  Scene Read() {
-    const std::string text = Text();
+  Scene Read(const std::string& text) {
     scene_.name = file_.stem().string();
     scene_.file = file_;
     scene_.question = Question(text);
@@ -293,18 +292,6 @@ class SceneReader {
   }
 
  private:
-  std::string Text() const {
-    std::error_code error;
-    std::ifstream stream;
-    if (fs::is_regular_file(file_, error)) stream.open(file_, std::ios::binary);
-    if (!stream.is_open()) {
-      throw InputError(fmt::format("{}: cannot be read; expected a scene file (TOML)", file_.string()));
-    }
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-
   // The tables of an array of tables, each titled "[[key]] 'name'" or "[[key]]".
   std::vector<Fields> Tables(const Fields& root, const std::string& key) const {
     std::vector<Fields> tables;
@@ -777,8 +764,24 @@ std::string ReadQuestion(const fs::path& file) {
   return Question(std::move(line));
 }
 
+std::string ReadSceneText(const fs::path& file) {
+  std::error_code error;
+  std::ifstream stream;
+  if (fs::is_regular_file(file, error)) stream.open(file, std::ios::binary);
+  if (!stream.is_open()) {
+    throw InputError(fmt::format("{}: cannot be read; expected a scene file (TOML)", file.string()));
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+Scene ParseScene(const fs::path& file, const std::string& text) {
+  return SceneReader(file).Read(text);
+}
+
 Scene LoadScene(const fs::path& file) {
-  return SceneReader(file).Read();
+  return ParseScene(file, ReadSceneText(file));
 }
 
 }  // namespace arealab

@@ -101,6 +101,10 @@ struct Scene {
 
 // Reads and checks a scene file. Throws InputError ("file:line: what; expected what").
 Scene LoadScene(const std::filesystem::path& file);
+// The same of `text`, as if `file` held it: what the text names lies in the file's folder.
+Scene ParseScene(const std::filesystem::path& file, const std::string& text);
+// The bytes of a scene file. Throws InputError where it cannot be read.
+std::string ReadSceneText(const std::filesystem::path& file);
 
 // A scene file's question alone, without reading the rest; empty where the file has no first line.
 std::string ReadQuestion(const std::filesystem::path& file);

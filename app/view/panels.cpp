@@ -1,0 +1,640 @@
+#include "app/view/panels.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "app/view/widgets.h"
+#include "glsl/effects.h"
+#include "glsl/variant.h"
+
+namespace arealab {
+namespace {
+
+using namespace widgets;
+
+const char* const kPaneLetters[] = {"A", "B", "C", "D"};
+const char* const kTransforms[] = {"sRGB", "ACES", "Neutral", "AgX", "False colour"};
+
+std::string Radiance(glm::dvec3 v) { return fmt::format("{:.4g}  {:.4g}  {:.4g}", v.x, v.y, v.z); }
+
+const char* RadianceUnit(const Scene& scene) { return scene.units == Units::kPhotometric ? "cd/m²" : "W/(m² sr)"; }
+const char* FluxUnit(const Scene& scene) { return scene.units == Units::kPhotometric ? "lm" : "W"; }
+
+// ------------------------------------------------------------------------------------------------ choosing variants
+
+const Technique* TechniqueOf(const ViewState& state, const std::string& variant) {
+  if (!state.techniques) return nullptr;
+  const std::string name = variant.substr(0, variant.find_first_of("+@"));
+  const auto found = std::find_if(state.techniques->begin(), state.techniques->end(),
+                                  [&](const Technique& technique) { return technique.name == name; });
+  return found == state.techniques->end() ? nullptr : &*found;
+}
+
+// Every technique's default and published form, those that cannot shade the scene greyed with the reason.
+void VariantCombo(PanelContext& context, int pane, float width) {
+  ShownVariant& shown = context.session.panes[static_cast<std::size_t>(pane)];
+  ImGui::SetNextItemWidth(width);
+  if (ImGui::BeginCombo(fmt::format("##pane{}", pane).c_str(), shown.name.c_str(), ImGuiComboFlags_HeightLargest)) {
+    if (context.state.techniques) {
+      for (const Variant& variant : DefaultVariants(*context.state.techniques)) {
+        const std::string name = variant.ShortName();
+        const auto why = WhyUnsupported(variant, context.session.scene);
+        if (ImGui::Selectable(name.c_str(), name == shown.name, why ? ImGuiSelectableFlags_Disabled : 0)) shown = {name, {}};
+        if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+          Tooltip(why ? *why : variant.technique->summary + ". " + variant.technique->citation);
+        }
+      }
+    }
+    ImGui::EndCombo();
+  }
+  if (const Technique* technique = TechniqueOf(context.state, shown.name)) {
+    Tip(fmt::format("Pane {}: {}", kPaneLetters[pane], technique->summary));
+  }
+}
+
+std::string Shortened(std::string text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  while (text.size() > 1 && ImGui::CalcTextSize((text + "…").c_str()).x > width) text.pop_back();
+  return text + "…";
+}
+
+// The options as menus, the knobs as sliders: what the technique's header declares.
+void VariantControls(PanelContext& context, int pane) {
+  ShownVariant& shown = context.session.panes[static_cast<std::size_t>(pane)];
+  const Technique* technique = TechniqueOf(context.state, shown.name);
+  Heading(fmt::format("{}   {}", kPaneLetters[pane], shown.name));
+  if (technique == nullptr) {
+    Note("Not in the registry: its file has gone or its header is wrong.");
+    return;
+  }
+  ImGui::PushID(pane);
+  Variant variant;
+  try {
+    variant = ParseVariant(*context.state.techniques, shown.name);
+  } catch (const std::exception& error) {
+    Note(error.what());
+    ImGui::PopID();
+    return;
+  }
+  for (const Option& option : technique->options) {
+    std::string& chosen = variant.options[option.name];
+    Row(option.name, "", option.summary);
+    if (ImGui::BeginCombo(("##" + option.name).c_str(), chosen.c_str())) {
+      for (const Choice& choice : option.choices) {
+        if (ImGui::Selectable(choice.name.c_str(), choice.name == chosen)) {
+          chosen = choice.name;
+          shown.name = variant.ShortName();
+        }
+        Tip(choice.summary);
+      }
+      ImGui::EndCombo();
+    }
+    Tip(option.summary);
+  }
+  for (const Knob& knob : technique->knobs) {
+    const auto set = shown.knobs.find(knob.name);
+    auto value = static_cast<float>(set == shown.knobs.end() ? knob.initial : set->second);
+    Row(knob.label, knob.unit, "");
+    if (ImGui::SliderFloat(("##" + knob.name).c_str(), &value, static_cast<float>(knob.min), static_cast<float>(knob.max),
+                           "%.4g")) {
+      shown.knobs[knob.name] = value;
+    }
+    Tip(fmt::format("{}, {:g} to {:g}{}{}; {:g} unless turned", knob.label, knob.min, knob.max, knob.unit.empty() ? "" : " ",
+                    knob.unit, knob.initial));
+  }
+  if (technique->options.empty() && technique->knobs.empty()) Note("Neither options nor knobs.");
+  const auto cost = context.state.costs.find(variant.Name());
+  if (cost != context.state.costs.end()) {
+    Row("Cost", "ns/px", "");
+    ImGui::Text("%.1f", cost->second.ns_per_pixel);
+    ImGui::SameLine();
+    Dim(fmt::format("{:.2f} × point", cost->second.ratio_to_point));
+  }
+  ImGui::PopID();
+}
+
+// ------------------------------------------------------------------------------------------------ lights, materials
+
+bool Vector(const char* id, glm::dvec3& value, float speed) {
+  return ImGui::DragScalarN(id, ImGuiDataType_Double, &value.x, 3, speed, nullptr, nullptr, "%.4g");
+}
+
+bool Scalar(const char* id, double& value, float speed, double low, double high, const char* format = "%.5g") {
+  if (!ImGui::DragScalar(id, ImGuiDataType_Double, &value, speed, &low, &high, format)) return false;
+  value = std::clamp(value, low, high);
+  return true;
+}
+
+// The light's own axes turned so that its normal is `normal`, its x axis level where that can be.
+void Aim(Light& light, const glm::dvec3& normal) {
+  light.normal = glm::normalize(normal);
+  glm::dvec3 up(0.0, 0.0, 1.0);
+  if (glm::length(glm::cross(up, light.normal)) < 1e-6) up = {0.0, 1.0, 0.0};
+  light.axis_x = glm::normalize(glm::cross(up, light.normal));
+  light.axis_y = glm::cross(light.normal, light.axis_x);
+}
+
+void LightControls(Session& session) {
+  Light& light = session.scene.lights[static_cast<std::size_t>(session.light)];
+  const char* const shapes[] = {"rectangle", "disk", "sphere"};
+  int shape = static_cast<int>(light.shape);
+  Row("Shape", "", "");
+  if (ImGui::Combo("##shape", &shape, shapes, 3)) {
+    light.shape = static_cast<LightShape>(shape);
+    if (light.shape != LightShape::kRectangle) light.half_size = glm::dvec2(std::sqrt(light.half_size.x * light.half_size.y));
+    if (light.shape == LightShape::kSphere) light.two_sided = false;
+  }
+  Tip("The light's shape. Its radiance stays when this changes.");
+  Row("Position", "m", "");
+  Vector("##position", light.center, 0.01f);
+  Tip("Centre, metres: x right, y away, z up. Double-click to type.");
+  if (light.shape != LightShape::kSphere) {
+    glm::dvec3 normal = light.normal;
+    Row("Facing", "", "");
+    if (Vector("##normal", normal, 0.01f) && glm::length(normal) > 1e-9) Aim(light, normal);
+    Tip("The direction of the lit side, a unit vector. R turns the light in the picture.");
+  }
+  if (light.shape == LightShape::kRectangle) {
+    glm::dvec2 size = 2.0 * light.half_size;
+    const double low = 1e-3, high = 1e5;
+    Row("Size", "m", "");
+    if (ImGui::DragScalarN("##size", ImGuiDataType_Double, &size.x, 2, 0.01f, &low, &high, "%.4g")) {
+      light.half_size = glm::clamp(0.5 * size, 0.5 * low, 0.5 * high);
+    }
+    Tip("Width and height, metres.");
+  } else {
+    Row("Radius", "m", "");
+    if (Scalar("##radius", light.half_size.x, 0.005f, 1e-3, 1e5)) light.half_size.y = light.half_size.x;
+    Tip("Metres.");
+  }
+  const double luminance = std::max(Luminance(light.radiance), 1e-12);
+  double radiance = luminance, flux = light.Flux();
+  Row(session.scene.units == Units::kPhotometric ? "Luminance" : "Radiance", RadianceUnit(session.scene), "");
+  if (Scalar("##radiance", radiance, static_cast<float>(0.01 * luminance), 1e-6, 1e12)) light.radiance *= radiance / luminance;
+  Tip(fmt::format("{}: how bright the surface is, the same from every side.", RadianceUnit(session.scene)));
+  Row(session.scene.units == Units::kPhotometric ? "Luminous flux" : "Flux", FluxUnit(session.scene), "");
+  if (Scalar("##flux", flux, static_cast<float>(0.01 * flux), 1e-9, 1e30)) light.radiance *= flux / light.Flux();
+  Tip(fmt::format("{}: all that it emits, π · area · radiance.", FluxUnit(session.scene)));
+  const double peak = std::max({light.radiance.x, light.radiance.y, light.radiance.z});
+  const double before = Luminance(light.radiance);
+  glm::vec3 hue(light.radiance / peak);
+  const auto recolor = [&](const glm::dvec3& color) {
+    if (Luminance(color) > 1e-6) light.radiance = color * (before / Luminance(color));
+  };
+  Row("Colour", "linear", "");
+  if (ImGui::ColorEdit3("##color", &hue.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs)) recolor(glm::dvec3(hue));
+  Tip("Hue, linear sRGB; the luminance stays.");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1.0f);
+  static float kelvin = 6500.0f;
+  if (ImGui::SliderFloat("##kelvin", &kelvin, 1700.0f, 12000.0f, "%.0f K")) recolor(PlanckianColor(kelvin));
+  Tip("Colour temperature of a black body, kelvin: 2700 a bulb, 6500 daylight. Sets the colour.");
+  if (light.shape != LightShape::kSphere) {
+    Row("Two-sided", "", "");
+    ImGui::Checkbox("##two_sided", &light.two_sided);
+    Tip("Lights both sides.");
+  }
+}
+
+void LightsTab(PanelContext& context) {
+  Session& session = context.session;
+  auto& lights = session.scene.lights;
+  const float rows = std::clamp(static_cast<float>(lights.size()), 2.0f, 6.0f);
+  if (ImGui::BeginListBox("##lights", {-1.0f, (rows + 0.4f) * ImGui::GetTextLineHeightWithSpacing()})) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      ImGui::PushID(static_cast<int>(i));
+      if (ImGui::Selectable(lights[i].name.c_str(), static_cast<int>(i) == session.light)) session.light = static_cast<int>(i);
+      ImGui::PopID();
+    }
+    ImGui::EndListBox();
+  }
+  if (session.light < 0) {
+    Note("Click a light, in the list or in the picture, to edit it.");
+    return;
+  }
+  const char* const modes[] = {"Move", "Turn", "Scale"};
+  int mode = static_cast<int>(session.gizmo);
+  Segments("gizmo", modes, 3, mode,
+           "What the handles in the picture do: G, R, S. Hold Ctrl to snap to 0.1 m and 15°.");
+  session.gizmo = static_cast<GizmoMode>(mode);
+  ImGui::Spacing();
+  LightControls(session);
+}
+
+void MaterialsTab(PanelContext& context) {
+  Session& session = context.session;
+  auto& materials = session.scene.materials;
+  const float rows = std::clamp(static_cast<float>(materials.size()), 2.0f, 6.0f);
+  if (ImGui::BeginListBox("##materials", {-1.0f, (rows + 0.4f) * ImGui::GetTextLineHeightWithSpacing()})) {
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      ImGui::PushID(static_cast<int>(i));
+      if (ImGui::Selectable(materials[i].name.c_str(), static_cast<int>(i) == session.material)) {
+        session.material = static_cast<int>(i);
+      }
+      ImGui::PopID();
+    }
+    ImGui::EndListBox();
+  }
+  if (materials.empty()) return;
+  Material& material = materials[static_cast<std::size_t>(std::clamp(session.material, 0, static_cast<int>(materials.size()) - 1))];
+  Row("Base colour", "linear", "");
+  ImGui::ColorEdit3("##base", &material.base_color.x, ImGuiColorEditFlags_Float);
+  Tip("Reflectance, linear sRGB, 0 to 1; times the texture where there is one.");
+  const bool ramp = material.roughness.x != material.roughness.y;
+  float roughness = material.roughness.x;
+  Row(ramp ? "Roughness, u 0" : "Roughness", "0 … 1", "");
+  if (ImGui::SliderFloat("##roughness", &roughness, 0.0f, 1.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp)) {
+    material.roughness = ramp ? glm::vec2(roughness, material.roughness.y) : glm::vec2(roughness);
+  }
+  Tip("The artist's roughness, 0 a mirror to 1 matte; alpha is its square. Ctrl+click to type.");
+  if (ramp) {
+    Row("Roughness, u 1", "0 … 1", "");
+    ImGui::SliderFloat("##roughness1", &material.roughness.y, 0.0f, 1.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    Tip("Roughness at the other end of the texture coordinate u.");
+  }
+  Row("Metalness", "0 … 1", "");
+  ImGui::SliderFloat("##metalness", &material.metalness, 0.0f, 1.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+  Tip("0 a dielectric with 4 % reflectance at normal incidence, 1 a metal of the base colour.");
+  if (material.normal_texture) {
+    Row("Normal map", "×", "");
+    ImGui::SliderFloat("##normal_scale", &material.normal_scale, 0.0f, 4.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    Tip("How far the normal map bends the normal; 1 as stored.");
+  }
+  std::string textures;
+  for (const auto& [texture, name] : {std::pair(&material.base_color_texture, "base colour"),
+                                      std::pair(&material.metallic_roughness_texture, "metalness and roughness"),
+                                      std::pair(&material.normal_texture, "normals")}) {
+    if (*texture) textures += fmt::format("{}{} {}×{}", textures.empty() ? "Textures: " : ", ", name, (*texture)->width, (*texture)->height);
+  }
+  if (!textures.empty()) Note(textures);
+}
+
+// ------------------------------------------------------------------------------------------------ pixel, view
+
+void PixelTab(PanelContext& context) {
+  const Session& session = context.session;
+  const Inspection& pixel = context.inspection;
+  if (!session.inspected) {
+    Note("Shift+click the picture to see what every pane has at a pixel, and the truth there.");
+    return;
+  }
+  if (!pixel.surface) {
+    Note(pixel.what.empty() ? "No surface there." : pixel.what);
+    return;
+  }
+  Heading("Point");
+  Row("Pixel", "", "");
+  ImGui::Text("%d, %d", pixel.pixel.x, pixel.pixel.y);
+  Row("Position", "m", "");
+  ImGui::Text("%.4g  %.4g  %.4g", pixel.position.x, pixel.position.y, pixel.position.z);
+  Row("Roughness", "", "");
+  ImGui::Text("%.4g", pixel.roughness);
+  ImGui::SameLine();
+  Dim(fmt::format("alpha {:.4g}", std::max(pixel.roughness * pixel.roughness, 1e-4)));
+  Row("View angle", "°", "");
+  ImGui::Text("%.2f", glm::degrees(std::acos(std::clamp(pixel.n_dot_v, -1.0, 1.0))));
+  Row("Form factor", "", "The share of the cosine-weighted hemisphere that the lights fill, summed");
+  ImGui::Text("%.5g", pixel.form_factor);
+  Row("Horizon", "", "How many of a light's corners (a sphere: its top and bottom) lie above the surface's plane");
+  ImGui::TextUnformatted(pixel.clipping.c_str());
+  Heading(fmt::format("{} radiance   {}", session.lobe == Lobe::kTotal ? "Total" : session.lobe == Lobe::kDiffuse ? "Diffuse" : "Specular",
+                      RadianceUnit(session.scene)));
+  if (ImGui::BeginTable("##values", 3, ImGuiTableFlags_SizingStretchProp)) {
+    ImGui::TableSetupColumn("name", 0, 1.1f);
+    ImGui::TableSetupColumn("value", 0, 1.6f);
+    ImGui::TableSetupColumn("error", 0, 0.8f);
+    const auto row = [&](const std::string& name, const glm::dvec3& value, bool truth) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(name.c_str());
+      Tip(name);
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(Radiance(value).c_str());
+      ImGui::TableNextColumn();
+      const double reference = Luminance(pixel.truth);
+      if (truth) {
+        Dim(fmt::format("±{:.1g} %", 100.0 * pixel.truth_error));
+      } else if (reference > 0.0) {
+        ImGui::Text("%+.3g %%", 100.0 * (Luminance(value) - reference) / reference);
+      }
+    };
+    row("truth", pixel.truth, true);
+    for (const auto& [name, value] : pixel.values) row(name, value, false);
+    ImGui::EndTable();
+  }
+}
+
+void ViewTab(PanelContext& context, PanelRequests& requests) {
+  Session& session = context.session;
+  Heading("Camera");
+  const char* const navigations[] = {"Blender", "Maya"};
+  int navigation = static_cast<int>(session.navigation);
+  Row("Navigation", "", "");
+  Segments("navigation", navigations, 2, navigation,
+           "Blender: middle drag orbits, Shift pans, wheel dollies. Maya: Alt + left, middle, right drag.");
+  session.navigation = static_cast<Navigation>(navigation);
+  double fov = glm::degrees(session.scene.camera.vertical_fov);
+  Row("Field of view", "°", "");
+  if (Scalar("##fov", fov, 0.1f, 1.0, 150.0, "%.1f")) session.scene.camera.vertical_fov = glm::radians(fov);
+  Tip("Vertical, degrees.");
+  Row("Saved", "", "");
+  for (std::size_t i = 0; i < session.cameras.size(); ++i) {
+    if (ImGui::Button(std::to_string(i + 1).c_str())) session.scene.camera = session.cameras[i];
+    Tip("Go to this camera.");
+    ImGui::SameLine();
+  }
+  if (session.cameras.size() < 9 && ImGui::Button("+")) session.cameras.push_back(session.scene.camera);
+  if (session.cameras.size() < 9) Tip("Remember where the camera stands.");
+
+  if (ImGui::Button("Make this the scene's camera", {-1.0f, 0.0f})) session.KeepCamera();
+  Tip("The next save writes the camera as it stands; otherwise the file keeps its own.");
+
+  Heading("Maps");
+  Row("Kind", "", "");
+  const char* const kinds[] = {"Signed", "Magnitude"};
+  int kind = session.display.kind == PictureKind::kMagnitude ? 1 : 0;
+  Segments("kind", kinds, 2, kind, "Signed: (A − B) / B of the luminance. Magnitude: the largest channel's, without its sign.");
+  session.display.kind = kind == 1 ? PictureKind::kMagnitude : PictureKind::kSigned;
+  Row("Scale", "", "");
+  const char* const scales[] = {"Log", "Linear"};
+  int scale = session.display.logarithmic ? 0 : 1;
+  Segments("scale", scales, 2, scale, "Log: two decades below the end of the scale.");
+  session.display.logarithmic = scale == 0;
+  Row("Ends at", "±%", "");
+  double range = 100.0 * session.display.range;
+  if (Scalar("##range", range, 0.5f, 0.1, 1000.0, "%.3g")) session.display.range = 0.01 * range;
+  Tip("The relative difference at the end of the map's colours, percent.");
+
+  Heading("Effects");
+  Note("What the scene calls for. Switch one off to see the picture and the cost without it.");
+  for (const auto& [name, value] : SceneEffects(session.scene)) {
+    if (value == 0) continue;
+    const bool shape = name == "EFFECT_RECTANGLE" || name == "EFFECT_DISK" || name == "EFFECT_SPHERE";
+    bool on = !session.effects_off.contains(name);
+    if (shape) continue;
+    if (ImGui::Checkbox(EffectLabel(name).c_str(), &on)) {
+      on ? void(session.effects_off.erase(name)) : void(session.effects_off.insert(name));
+    }
+    Tip(EffectReason(name));
+  }
+
+  Heading("Files");
+  if (ImGui::Button("Save scene", {-1.0f, 0.0f})) requests.save = true;
+  Tip("Ctrl+S: writes what was edited into the scene file; comments and order stay.");
+  if (ImGui::Button("Screenshot PNG", {-1.0f, 0.0f})) requests.screenshot = true;
+  Tip("F12: the window as it is seen, into the current folder.");
+  if (ImGui::Button("Linear EXR", {-1.0f, 0.0f})) requests.exr = true;
+  Tip("F11: pane A's radiance with its lobes as layers, unexposed.");
+}
+
+void TechniqueTab(PanelContext& context) {
+  Session& session = context.session;
+  if (session.layout == Layout::kGrid) {
+    Row("Panes", "", "");
+    ImGui::SliderInt("##panes", &session.grid_panes, 2, 4);
+    Tip("How many variants the grid shows.");
+    for (int i = 2; i < session.grid_panes; ++i) {
+      Row(kPaneLetters[i], "", "");
+      VariantCombo(context, i, -1.0f);
+    }
+  }
+  for (int i = 0; i < session.PaneCount(); ++i) VariantControls(context, i);
+  Heading("Cost");
+  ImGui::Checkbox("Measure", &session.measure);
+  Tip("Times the lighting pass of each pane against `point`, in turns, whenever the picture is whole and nothing moves.");
+  if (session.measure && context.state.software) Note("CPU rasteriser, not a GPU.");
+}
+
+}  // namespace
+
+glm::vec4 GridCell(int i, int count, glm::vec2 size) {
+  const float columns = 2.0f, rows = count > 2 ? 2.0f : 1.0f, gap = 2.0f;
+  const glm::vec2 cell = glm::floor((size - gap * glm::vec2(columns - 1.0f, rows - 1.0f)) / glm::vec2(columns, rows));
+  return {static_cast<float>(i % 2) * (cell.x + gap), static_cast<float>(i / 2) * (cell.y + gap), cell.x, cell.y};
+}
+
+float BarHeight(const PanelContext& context) { return std::round(2.9f * context.unit); }
+float ColumnWidth(const PanelContext& context) { return std::round(21.5f * context.unit); }
+
+void DrawBar(PanelContext& context, float width, PanelRequests& requests) {
+  Session& session = context.session;
+  const float u = context.unit;
+  ImGui::SetNextWindowPos({0.0f, 0.0f});
+  ImGui::SetNextWindowSize({width, BarHeight(context)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.8f * u, 0.5f * (BarHeight(context) - ImGui::GetFrameHeight())});
+  ImGui::Begin("##bar", nullptr, kFixedWindow);
+  ImGui::PopStyleVar();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(Shortened(session.scene.name, 7.0f * u).c_str());
+  Tip(session.scene.question.empty() ? session.scene.file.string() : session.scene.question);
+  ImGui::SameLine(0.0f, 0.2f * u);
+  ImGui::TextUnformatted(session.Dirty() ? "•" : " ");
+  Tip("Edited since it was saved: Ctrl+S");
+
+  Gap(0.8f * u);
+  VariantCombo(context, 0, 8.5f * u);
+  if (session.layout != Layout::kSingle) {
+    ImGui::SameLine(0.0f, 0.3f * u);
+    if (ImGui::Button("⇄")) std::swap(session.panes[0], session.panes[1]);
+    Tip("Swap A and B (X).");
+    ImGui::SameLine(0.0f, 0.3f * u);
+    VariantCombo(context, 1, 8.5f * u);
+  }
+  Gap(1.0f * u);
+  const char* const layouts[] = {"Single", "Wipe", "Difference", "Flicker", "Grid"};
+  int layout = static_cast<int>(session.layout);
+  Segments("layout", layouts, 5, layout, "How the panes are compared: 1 to 5.");
+  session.layout = static_cast<Layout>(layout);
+
+  Gap(1.0f * u);
+  ImGui::SetNextItemWidth(5.6f * u);
+  int lobe = static_cast<int>(session.lobe);
+  const char* const lobes[] = {"Total", "Diffuse", "Specular"};
+  if (ImGui::Combo("##lobe", &lobe, lobes, 3)) session.lobe = static_cast<Lobe>(lobe);
+  Tip("Which lobe is shown.");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(5.0f * u);
+  double exposure = session.exposure;
+  if (Scalar("##exposure", exposure, 0.02f, -32.0, 32.0, "%+.2f EV")) session.exposure = exposure;
+  Tip("Exposure on top of the scene's, stops. Home: 0. A: automatic.");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(6.2f * u);
+  int transform = session.false_color ? 4 : static_cast<int>(session.display.transform);
+  if (ImGui::Combo("##transform", &transform, kTransforms, 5)) {
+    session.false_color = transform == 4;
+    if (transform < 4) session.display.transform = static_cast<ViewTransform>(transform);
+  }
+  Tip("View transform: plain sRGB, ACES (fitted), Khronos PBR Neutral, AgX, or stops of luminance in false colour.");
+  ImGui::SameLine(ImGui::GetWindowWidth() - 2.6f * u);
+  if (ImGui::Button("?", {1.8f * u, 0.0f})) requests.toggle_help = true;
+  Tip("Keys: ?");
+  ImGui::End();
+}
+
+void DrawColumn(PanelContext& context, glm::vec2 position, glm::vec2 size, PanelRequests& requests) {
+  const float u = context.unit;
+  ImGui::SetNextWindowPos({position.x, position.y});
+  ImGui::SetNextWindowSize({size.x, size.y});
+  ImGui::Begin("##column", nullptr, kFixedWindow);
+  const float foot = 3.4f * u;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0.38f * u, 0.3f * u});
+  const bool tabs = ImGui::BeginTabBar("##tabs");
+  ImGui::PopStyleVar();
+  if (tabs) {
+    const auto tab = [&](const char* name, const char* tip, const auto& content) {
+      const bool open = ImGui::BeginTabItem(name);
+      Tip(tip);
+      if (!open) return;
+      ImGui::BeginChild(name, {0.0f, -foot});
+      ImGui::Spacing();
+      content();
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    };
+    tab("Lights", "The scene's lights", [&] { LightsTab(context); });
+    tab("Materials", "The scene's materials", [&] { MaterialsTab(context); });
+    tab("Shading", "Options, knobs and cost of what is shown", [&] { TechniqueTab(context); });
+    tab("Pixel", "What every pane has at one pixel", [&] { PixelTab(context); });
+    tab("View", "Camera, maps, effects, files", [&] { ViewTab(context, requests); });
+    ImGui::EndTabBar();
+  }
+  ImGui::SetCursorPosY(size.y - foot + 0.1f * u);
+  ImGui::Separator();
+  std::string status;
+  for (const ShadedVariant& variant : context.state.variants) {
+    if (!variant.image) continue;
+    status += fmt::format("{}{} {:.0f} ms", status.empty() ? "" : "   ", variant.variant.name, 1e3 * variant.seconds);
+  }
+  if (context.progress < 1.0) {
+    ImGui::ProgressBar(static_cast<float>(context.progress), {-1.0f, 0.25f * u}, "");
+  } else {
+    ImGui::Dummy({1.0f, 0.25f * u});
+  }
+  Dim(status.empty() ? "starting" : status);
+  Tip(fmt::format("Wall time of the last picture, per pane. Shaded by {} on {}.", context.state.platform, context.state.renderer));
+  ImGui::End();
+}
+
+void DrawOverlay(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
+  Session& session = context.session;
+  const float u = context.unit;
+  ImDrawList& draw = *ImGui::GetBackgroundDrawList();
+  draw.PushClipRect({origin.x, origin.y}, {origin.x + size.x, origin.y + size.y}, true);
+  const float wrap = size.x - 2.0f * u;
+  const auto label = [&](float x, float y, float align, const std::string& text, ImU32 color = IM_COL32(240, 240, 242, 255)) {
+    const ImVec2 extent = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+    const ImVec2 at(std::round(x - align * extent.x), y);
+    draw.AddRectFilled({at.x - 0.5f * u, at.y - 0.2f * u}, {at.x + extent.x + 0.5f * u, at.y + extent.y + 0.2f * u},
+                       IM_COL32(18, 19, 22, 190), 0.35f * u);
+    draw.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color, text.c_str(), nullptr, wrap);
+  };
+  const float left = origin.x + u, top = origin.y + 0.8f * u;
+  const auto name = [&](int pane) { return session.panes[static_cast<std::size_t>(pane)].name; };
+  switch (session.layout) {
+    case Layout::kSingle:
+      label(left, top, 0.0f, name(0));
+      break;
+    case Layout::kFlicker:
+      label(left, top, 0.0f, name(context.flicker_pane));
+      break;
+    case Layout::kDifference:
+      label(left, top, 0.0f, fmt::format("({} − {}) / {}", name(0), name(1), name(1)));
+      DrawLegend(draw, session, {origin.x + size.x - u, origin.y + size.y - u}, u);
+      break;
+    case Layout::kWipe: {
+      const float x = std::round(origin.x + session.wipe * size.x);
+      draw.AddRectFilled({x - 1.5f, origin.y}, {x + 1.5f, origin.y + size.y}, IM_COL32(0, 0, 0, 90));
+      draw.AddLine({x, origin.y}, {x, origin.y + size.y}, IM_COL32(255, 255, 255, 200), 1.0f);
+      const ImVec2 knob(x, origin.y + 0.5f * size.y);
+      draw.AddCircleFilled(knob, 0.7f * u, IM_COL32(28, 29, 33, 230));
+      draw.AddCircle(knob, 0.7f * u, context.over_wipe ? IM_COL32(240, 176, 92, 255) : IM_COL32(255, 255, 255, 200), 0, 1.5f);
+      for (const float side : {-1.0f, 1.0f}) {
+        const float a = x + side * 0.38f * u, b = x + side * 0.18f * u;
+        draw.AddTriangleFilled({a, knob.y}, {b, knob.y - 0.2f * u}, {b, knob.y + 0.2f * u}, IM_COL32(235, 235, 235, 255));
+      }
+      label(left, top, 0.0f, name(0));
+      label(origin.x + size.x - u, top, 1.0f, name(1));
+      break;
+    }
+    case Layout::kGrid:
+      for (int i = 0; i < session.grid_panes; ++i) {
+        const glm::vec4 cell = GridCell(i, session.grid_panes, size);
+        label(origin.x + cell.x + u, origin.y + cell.y + 0.8f * u, 0.0f, name(i));
+      }
+      break;
+  }
+  if (session.false_color && session.layout != Layout::kDifference) {
+    DrawLegend(draw, session, {origin.x + size.x - u, origin.y + size.y - u}, u);
+  }
+  if (session.inspected) {
+    const ImVec2 at(origin.x + static_cast<float>(session.inspected->x) * size.x, origin.y + static_cast<float>(session.inspected->y) * size.y);
+    draw.AddCircle(at, 0.45f * u, IM_COL32(0, 0, 0, 160), 0, 3.0f);
+    draw.AddCircle(at, 0.45f * u, IM_COL32(255, 255, 255, 230), 0, 1.5f);
+  }
+  // What went wrong stays until it is mended, at the picture's foot.
+  float y = origin.y + size.y - 0.7f * u;
+  const auto lines = [&](const std::string& text, ImU32 color) {
+    if (text.empty()) return;
+    y -= ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y;
+    label(left, y, 0.0f, text, color);
+    y -= 0.8f * u;
+  };
+  if (!context.message.empty()) lines(context.message, context.trouble ? IM_COL32(255, 150, 120, 255) : IM_COL32(240, 240, 242, 255));
+  lines(context.state.error, IM_COL32(255, 150, 120, 255));
+  std::string last;
+  for (const ShadedVariant& variant : context.state.variants) {
+    if (variant.error != last) lines(variant.error, IM_COL32(255, 150, 120, 255));
+    last = variant.error;
+  }
+  draw.PopClipRect();
+}
+
+void DrawHelp(PanelContext& context, glm::vec2 window) {
+  struct Key {
+    const char* key;
+    const char* what;
+  };
+  const bool maya = context.session.navigation == Navigation::kMaya;
+  const Key keys[] = {{maya ? "Alt + left drag" : "Middle drag, left drag", "orbit"},
+                      {maya ? "Alt + middle drag" : "Shift + middle drag", "pan"},
+                      {maya ? "Alt + right drag, wheel" : "Wheel, Ctrl + middle drag", "dolly"},
+                      {"F", "look at the point under the pointer"},
+                      {"Click", "select a light"},
+                      {"Shift + click", "inspect a pixel"},
+                      {"G  R  S", "move, turn, scale the light; Ctrl snaps"},
+                      {"1 … 5", "single, wipe, difference, flicker, grid"},
+                      {"X", "swap A and B"},
+                      {"A", "automatic exposure; Home: none"},
+                      {"[  ]", "exposure by a third of a stop"},
+                      {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
+                      {"Ctrl + S", "save the scene"},
+                      {"F11  F12", "linear EXR, screenshot PNG"},
+                      {"Ctrl + Q", "leave"},
+                      {"Tab", "hide or show the controls"},
+                      {"?", "this list"}};
+  ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, 0, {0.5f, 0.5f});
+  ImGui::SetNextWindowFocus();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {1.6f * context.unit, 1.2f * context.unit});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.5f * context.unit);
+  ImGui::Begin("##help", nullptr, kFixedWindow | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PopStyleVar(2);
+  if (ImGui::BeginTable("##keys", 2)) {
+    for (const Key& key : keys) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(key.key);
+      ImGui::SameLine();
+      ImGui::Dummy({context.unit, 1.0f});
+      ImGui::TableNextColumn();
+      Dim(key.what);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+}  // namespace arealab

@@ -1,0 +1,93 @@
+// What the window works on: the scene and its edits with their undo, and how it is looked at. No OpenGL, no windowing.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/view/display.h"
+#include "app/view/worker.h"
+#include "scenes/scene.h"
+
+namespace arealab {
+
+enum class Layout { kSingle, kWipe, kDifference, kFlicker, kGrid };
+enum class Navigation { kBlender, kMaya };
+enum class GizmoMode { kMove, kTurn, kScale };
+
+// What an edit changes and an undo brings back.
+struct Edits {
+  std::vector<Light> lights;
+  std::vector<Material> materials;
+  double exposure = 0.0;
+};
+bool Same(const Light& a, const Light& b);
+bool Same(const Material& a, const Material& b);
+bool Same(const Edits& a, const Edits& b);
+bool Same(const Camera& a, const Camera& b);
+
+class Session {
+ public:
+  explicit Session(Scene scene);
+
+  Scene scene;                 // as it is edited
+  std::uint64_t geometry = 0;  // another number: other meshes
+
+  // How it is looked at.
+  std::array<ShownVariant, 4> panes;  // A, B and, in a grid, C and D
+  int grid_panes = 4;
+  Layout layout = Layout::kWipe;
+  DisplaySettings display;
+  float wipe = 0.5f;      // 0 … 1 of the width
+  double exposure = 0.0;  // EV on top of the scene's
+  Lobe lobe = Lobe::kTotal;
+  bool false_color = false;
+  Navigation navigation = Navigation::kBlender;
+  std::vector<Camera> cameras;  // saved
+  GizmoMode gizmo = GizmoMode::kMove;
+  std::set<std::string> effects_off;
+  bool measure = false;
+  int light = -1;     // selected, or -1
+  int material = 0;   // selected
+  std::optional<glm::dvec2> inspected;  // 0 … 1 across the picture, from its top left
+
+  int PaneCount() const { return layout == Layout::kGrid ? grid_panes : layout == Layout::kSingle ? 1 : 2; }
+
+  // Ends an edit where one was made since the last call: call it when no control is held.
+  void Commit();
+  void Undo();
+  void Redo();
+  bool CanUndo() const { return !undo_.empty(); }
+  bool CanRedo() const { return !redo_.empty(); }
+  // Whether anything that a scene file holds differs from the file.
+  bool Dirty() const;
+
+  // Writes what was edited into the scene file; the camera only where it was made the scene's. Throws InputError.
+  void Save();
+  void KeepCamera() { file_camera_ = scene.camera; }
+  // Takes the scene as it is now on disk, keeping how it is looked at; edits since are dropped.
+  void Replace(Scene from_disk, bool keep_camera);
+
+ private:
+  Edits Current() const { return {scene.lights, scene.materials, scene.exposure}; }
+  void Set(const Edits& edits);
+
+  Scene on_disk_;
+  Camera file_camera_;  // what the file is to hold: the one of the view wanders
+  Edits committed_;
+  std::vector<Edits> undo_, redo_;
+};
+
+// A built-in name, a scene file, or a mesh alone, which gets a floor, a camera that frames it and a softbox. Throws
+// InputError.
+Scene OpenScene(const std::string& name_or_path);
+
+// $XDG_CONFIG_HOME/arealab or ~/.config/arealab; made where it is missing; empty where that fails.
+std::filesystem::path ConfigFolder();
+
+}  // namespace arealab

@@ -1,0 +1,743 @@
+#include "app/view/view.h"
+
+#include <glad/gl.h>
+// After glad: GLFW brings no OpenGL header of its own where it sees one.
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <future>
+#include <thread>
+
+#include "app/view/camera.h"
+#include "app/view/gizmo.h"
+#include "app/view/inspect.h"
+#include "app/view/panels.h"
+#include "app/view/watch.h"
+#include "app/view/widgets.h"
+#include "compare/image_files.h"
+#include "glsl/variant.h"
+#include "scenes/error.h"
+
+namespace arealab {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double Seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+constexpr double kFrameSeconds = 1.0 / 60.0;
+constexpr double kMessageSeconds = 6.0;
+constexpr double kFlickerSeconds = 0.5;
+constexpr double kClickReach = 4.0;  // px: a press that moves less is a click
+
+// Since the process began, loading of libraries included.
+double SinceProcessStart() {
+  std::ifstream stat("/proc/self/stat");
+  std::string text;
+  std::getline(stat, text);
+  // Field 22, counted behind the name in parentheses, is the start in ticks since boot [proc(5)].
+  unsigned long long ticks = 0;
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos ||
+      std::sscanf(text.c_str() + name_end + 2, "%*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d %*d %*d %*d %llu",
+                  &ticks) != 1) {
+    return 0.0;
+  }
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+         static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+// What the next start remembers of this one: a text of "key value" lines in the user's configuration folder.
+struct Remembered {
+  glm::ivec2 size{1280, 720};
+  int navigation = 0;
+
+  static Remembered Load() {
+    Remembered remembered;
+    std::ifstream stream(ConfigFolder() / "view.conf");
+    for (std::string key; stream >> key;) {
+      if (key == "size") stream >> remembered.size.x >> remembered.size.y;
+      if (key == "navigation") stream >> remembered.navigation;
+    }
+    remembered.size = glm::clamp(remembered.size, glm::ivec2(320, 240), glm::ivec2(16384, 16384));
+    remembered.navigation = std::clamp(remembered.navigation, 0, 1);
+    return remembered;
+  }
+
+  void Save() const {
+    const fs::path folder = ConfigFolder();
+    if (folder.empty()) return;
+    std::ofstream(folder / "view.conf.tmp") << fmt::format("size {} {}\nnavigation {}\n", size.x, size.y, navigation);
+    std::error_code error;
+    fs::rename(folder / "view.conf.tmp", folder / "view.conf", error);
+  }
+};
+
+std::string glfw_trouble;
+
+struct GlfwLibrary {
+  GlfwLibrary() {
+    glfwSetErrorCallback([](int, const char* text) { glfw_trouble = text; });
+    if (glfwInit() != GLFW_TRUE) {
+      throw InputError(fmt::format("no display: {}; expected an X server or Wayland (DISPLAY, WAYLAND_DISPLAY), "
+                                   "or `arealab render` where there is none", glfw_trouble));
+    }
+  }
+  ~GlfwLibrary() { glfwTerminate(); }
+};
+
+struct GlfwWindow {
+  GlfwWindow(glm::ivec2 size, const std::string& title) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_FALSE);
+    glfwWindowHint(GLFW_DEPTH_BITS, 0);
+    glfwWindowHint(GLFW_STENCIL_BITS, 0);
+    window = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
+    if (window == nullptr) {
+      throw InputError(fmt::format("no window: {}; expected a display with OpenGL 4.5", glfw_trouble));
+    }
+    glfwMakeContextCurrent(window);
+    if (gladLoadGLContext(&gl, glfwGetProcAddress) == 0) throw InputError("the display's OpenGL does not load; expected OpenGL 4.5");
+  }
+  ~GlfwWindow() { glfwDestroyWindow(window); }
+
+  GLFWwindow* window = nullptr;
+  GladGLContext gl{};
+};
+
+struct ImGuiLibrary {
+  explicit ImGuiLibrary(GLFWwindow* window) {
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+  }
+  ~ImGuiLibrary() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+};
+
+// Times of a session, for --json.
+struct Figures {
+  double first_picture = 0.0, first_full = 0.0;  // s since the process began
+  std::vector<double> latency;                   // s from an input to a picture that shows it
+  std::vector<double> full_after;                // s from the last input to the picture at full size
+  std::vector<double> frame;                     // s of the window's own work per frame
+
+  static double Percentile(std::vector<double> values, double share) {
+    if (values.empty()) return 0.0;
+    const auto index = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
+    return values[index];
+  }
+  void Print() const {
+    fmt::print("{{\"first_picture_ms\": {:.0f}, \"first_full_ms\": {:.0f}, "
+               "\"input_to_picture_ms\": {{\"median\": {:.1f}, \"p95\": {:.1f}, \"count\": {}}}, "
+               "\"rest_to_full_ms\": {{\"median\": {:.1f}, \"max\": {:.1f}, \"count\": {}}}, "
+               "\"frame_ms\": {{\"median\": {:.1f}, \"p95\": {:.1f}, \"count\": {}}}}}\n",
+               1e3 * first_picture, 1e3 * first_full, 1e3 * Percentile(latency, 0.5), 1e3 * Percentile(latency, 0.95),
+               latency.size(), 1e3 * Percentile(full_after, 0.5), 1e3 * Percentile(full_after, 1.0), full_after.size(),
+               1e3 * Percentile(frame, 0.5), 1e3 * Percentile(frame, 0.95), frame.size());
+  }
+};
+
+enum class Drag { kNone, kPending, kOrbit, kPan, kDolly, kWipe, kControls };
+
+// What the window's callbacks saw since the last frame. Presses are kept here, since ImGui 1.86 looks at keys and places
+// once a frame only: a key that is tapped or a drag that begins between two slow frames would be lost to it.
+struct Inputs {
+  struct Key {
+    int key, modifiers;
+  };
+  std::optional<Clock::time_point> first;  // that no job has answered yet
+  bool any = false;
+  std::vector<Key> keys;
+  int buttons = 0;        // that are down
+  glm::dvec2 press{0.0}, release{0.0};  // where a button went down and up last, in the window
+};
+Inputs inputs;
+void Noticed() {
+  inputs.any = true;
+  if (!inputs.first) inputs.first = Clock::now();
+}
+
+class View {
+ public:
+  View(const ViewOptions& options, GlfwWindow& window, Worker& worker, Session& session)
+      : options_(options), window_(window), worker_(worker), session_(session), display_(window.gl),
+        watch_(options.shader_folder), bare_(options.bare) {
+    watch_.SetScene(session.scene.file);
+    Scale();
+  }
+
+  void Run() {
+    while (glfwWindowShouldClose(window_.window) == GLFW_FALSE && !done_) {
+      Wait();
+      Poll();
+      if (redraw_ > 0) Frame();
+    }
+    if (options_.json) figures_.Print();
+  }
+
+ private:
+  // ---------------------------------------------------------------------------------------------- the loop
+
+  // Sleeps until something happens: a window that nobody touches costs nothing.
+  void Wait() {
+    const double since = Seconds(Clock::now() - last_frame_);
+    if (redraw_ > 0) {
+      if (since < kFrameSeconds) std::this_thread::sleep_for(std::chrono::duration<double>(kFrameSeconds - since));
+      glfwPollEvents();
+    } else {
+      const bool lively = worker_.progress() < 1.0 || session_.layout == Layout::kFlicker || !message_.empty();
+      glfwWaitEventsTimeout(lively ? 0.1 : 0.25);
+      // Typing carets blink and tooltips appear without an event.
+      if (lively || Seconds(Clock::now() - last_frame_) > 0.5) redraw_ = std::max(redraw_, 1);
+    }
+    if (std::exchange(inputs.any, false)) redraw_ = 3;  // ImGui settles one or two frames after an event
+  }
+
+  void Poll() {
+    if (auto news = worker_.News()) {
+      state_ = std::move(*news);
+      std::string trouble = state_.error;
+      for (const ShadedVariant& variant : state_.variants) {
+        if (trouble.empty()) trouble = variant.error;
+      }
+      if (!trouble.empty() && trouble != told_) fmt::print(stderr, "{}\n", trouble);
+      told_ = trouble;
+      redraw_ = std::max(redraw_, 1);
+    }
+    if (const Watch::Change change = watch_.Poll(); change.shaders || change.scene) {
+      if (change.shaders) ++library_;
+      if (change.scene) LoadFromDisk();
+      redraw_ = 3;
+    }
+    if (loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      try {
+        Scene scene = loading_.get();
+        session_.Replace(std::move(scene), true);
+        Say("scene file read again");
+      } catch (const std::exception& error) {
+        Say(error.what(), true);
+      }
+      redraw_ = 3;
+    }
+    if (!message_.empty() && Seconds(Clock::now() - said_) > (trouble_ ? 4.0 : 1.0) * kMessageSeconds) message_.clear();
+  }
+
+  void LoadFromDisk() {
+    if (session_.Dirty()) {
+      Say("the scene file has changed on disk; undo your edits or save over it");
+      return;
+    }
+    loading_ = std::async(std::launch::async, [file = session_.scene.file] { return OpenScene(file.string()); });
+  }
+
+  void Frame() {
+    const auto start = Clock::now();
+    --redraw_;
+    last_frame_ = start;
+    glm::ivec2 framebuffer(0), window_size(0);
+    glfwGetFramebufferSize(window_.window, &framebuffer.x, &framebuffer.y);
+    glfwGetWindowSize(window_.window, &window_size.x, &window_size.y);
+    if (framebuffer.x < 16 || framebuffer.y < 16) return;
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    PanelContext context{session_, state_, worker_.progress(), unit_, message_, trouble_, inspection_};
+    context.flicker_pane = FlickerPane();
+    const float bar = bare_ ? 0.0f : BarHeight(context), column = bare_ ? 0.0f : ColumnWidth(context);
+    origin_ = {0.0, bar};
+    size_ = glm::max(glm::dvec2(ImGui::GetIO().DisplaySize.x - column, ImGui::GetIO().DisplaySize.y - bar), glm::dvec2(16.0));
+
+    Keys();
+    Pointer(context);
+    PanelRequests requests;
+    if (!bare_) {
+      DrawOverlay(context, glm::vec2(origin_), glm::vec2(size_));
+      DrawBar(context, ImGui::GetIO().DisplaySize.x, requests);
+      DrawColumn(context, {static_cast<float>(size_.x), bar}, {column, static_cast<float>(size_.y)}, requests);
+      if (help_) DrawHelp(context, glm::vec2(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y));
+    }
+    if (requests.toggle_help) help_ = !help_;
+    if (requests.save) Save();
+    if (requests.screenshot) wanted_shot_ = Numbered(".png");
+    if (requests.exr) wanted_shot_ = Numbered(".exr");
+    if (!ImGui::IsAnyItemActive() && !gizmo_.dragging()) session_.Commit();
+    ImGui::Render();
+
+    Submit();
+    Composite(framebuffer);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    Leave();
+    if (!wanted_shot_.empty()) Shoot(std::exchange(wanted_shot_, {}), framebuffer);
+    glfwSwapBuffers(window_.window);
+    Note(start);
+  }
+
+  // Figures of what is now on the screen.
+  void Note(Clock::time_point start) {
+    const auto now = Clock::now();
+    figures_.frame.push_back(Seconds(now - start));
+    const bool any = !state_.variants.empty() &&
+                     std::all_of(state_.variants.begin(), state_.variants.end(),
+                                 [&](const ShadedVariant& v) { return v.job >= shown_job_ && (v.image || !v.error.empty()); });
+    if (!any) return;
+    if (figures_.first_picture == 0.0) figures_.first_picture = SinceProcessStart();
+    std::uint64_t oldest = state_.job;
+    for (const ShadedVariant& variant : state_.variants) oldest = std::min(oldest, variant.job);
+    while (!waiting_.empty() && waiting_.front().first <= oldest) {
+      figures_.latency.push_back(Seconds(now - waiting_.front().second));
+      waiting_.erase(waiting_.begin());
+    }
+    if (state_.full && state_.job == submitted_ && full_job_ != submitted_) {
+      full_job_ = submitted_;
+      if (figures_.first_full == 0.0) figures_.first_full = SinceProcessStart();
+      else figures_.full_after.push_back(Seconds(now - submitted_at_));
+    }
+  }
+
+  // ---------------------------------------------------------------------------------------------- shading
+
+  glm::ivec2 PaneSize() const {
+    const glm::dvec2 scale(ImGui::GetIO().DisplayFramebufferScale.x, ImGui::GetIO().DisplayFramebufferScale.y);
+    const glm::ivec2 whole(glm::round(size_ * scale));
+    if (session_.layout != Layout::kGrid) return whole;
+    const glm::vec4 cell = GridCell(0, session_.grid_panes, glm::vec2(whole));
+    return glm::ivec2(cell.z, cell.w);
+  }
+
+  void Submit() {
+    ViewJob job;
+    job.size = PaneSize();
+    for (int i = 0; i < session_.PaneCount(); ++i) job.variants.push_back(session_.panes[static_cast<std::size_t>(i)]);
+    job.effects_off = session_.effects_off;
+    job.library = library_;
+    job.measure = session_.measure;
+    const Scene& scene = session_.scene;
+    const bool same = last_.scene && job.size == last_.size && job.variants == last_.variants &&
+                      job.effects_off == last_.effects_off && job.library == last_.library && job.measure == last_.measure &&
+                      session_.geometry == last_geometry_ && Same(scene.camera, last_.scene->camera) &&
+                      Same(Edits{scene.lights, scene.materials, 0.0}, {last_.scene->lights, last_.scene->materials, 0.0});
+    if (same) {
+      inputs.first.reset();
+      return;
+    }
+    job.scene = std::make_shared<const Scene>(scene);
+    last_ = job;
+    last_geometry_ = session_.geometry;
+    submitted_ = worker_.Submit(std::move(job));
+    submitted_at_ = inputs.first.value_or(Clock::now());
+    if (inputs.first) waiting_.emplace_back(submitted_, *inputs.first);
+    inputs.first.reset();
+  }
+
+  int FlickerPane() const { return static_cast<int>(Seconds(Clock::now().time_since_epoch()) / kFlickerSeconds) % 2; }
+
+  const ShadedVariant* Shown(int pane) const {
+    const auto i = static_cast<std::size_t>(pane);
+    return i < state_.variants.size() ? &state_.variants[i] : nullptr;
+  }
+
+  void Composite(glm::ivec2 framebuffer) {
+    const GladGLContext& gl = window_.gl;
+    gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl.Viewport(0, 0, framebuffer.x, framebuffer.y);
+    gl.ClearColor(0.09f, 0.09f, 0.095f, 1.0f);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+    for (int i = 0; i < session_.PaneCount(); ++i) {
+      // A variant that fails keeps the last picture that it had.
+      if (const ShadedVariant* shaded = Shown(i); shaded != nullptr && shaded->image) {
+        display_.SetPicture(i, shaded->image, shaded->emission, session_.lobe);
+      }
+    }
+    DisplaySettings settings = session_.display;
+    settings.exposure = session_.scene.exposure + session_.exposure;
+    const glm::dvec2 scale(ImGui::GetIO().DisplayFramebufferScale.x, ImGui::GetIO().DisplayFramebufferScale.y);
+    const glm::ivec2 whole(glm::round(size_ * scale));
+    const glm::ivec4 area(0, framebuffer.y - static_cast<int>(std::lround(origin_.y * scale.y)) - whole.y, whole.x, whole.y);
+    const PictureKind plain = session_.false_color ? PictureKind::kFalseColor : PictureKind::kPlain;
+    switch (session_.layout) {
+      case Layout::kSingle:
+        settings.kind = plain;
+        display_.Draw(area, 0, 0, settings);
+        break;
+      case Layout::kFlicker:
+        settings.kind = plain;
+        display_.Draw(area, FlickerPane(), FlickerPane(), settings);
+        break;
+      case Layout::kWipe:
+        settings.kind = plain;
+        display_.Draw(area, 0, 0, settings, {0.0f, session_.wipe});
+        display_.Draw(area, 1, 1, settings, {session_.wipe, 1.0f});
+        break;
+      case Layout::kDifference:
+        settings.kind = session_.display.kind == PictureKind::kMagnitude ? PictureKind::kMagnitude : PictureKind::kSigned;
+        settings.floor_luminance = Floor();
+        display_.Draw(area, 0, 1, settings);
+        break;
+      case Layout::kGrid:
+        settings.kind = plain;
+        for (int i = 0; i < session_.grid_panes; ++i) {
+          const glm::ivec4 cell(GridCell(i, session_.grid_panes, glm::vec2(whole)));
+          display_.Draw({area.x + cell.x, area.y + whole.y - cell.y - cell.w, cell.z, cell.w}, i, i, settings);
+        }
+        break;
+    }
+  }
+
+  // 1 % of the reference's mean luminance over what it lights, as in the report.
+  double Floor() {
+    const ShadedVariant* reference = Shown(1);
+    if (reference == nullptr || !reference->image) return 0.0;
+    if (reference->image != floor_of_) {
+      floor_of_ = reference->image;
+      floor_ = 0.01 * MeanLuminance(*reference->image);
+    }
+    return floor_;
+  }
+
+  // ---------------------------------------------------------------------------------------------- hands
+
+  glm::dvec2 Mouse() const { return glm::dvec2(ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y) - origin_; }
+
+  bool Inside(glm::dvec2 p) const { return p.x >= 0.0 && p.y >= 0.0 && p.x < size_.x && p.y < size_.y; }
+
+  // The pane under the pointer: its origin and size, of which every gesture is measured.
+  std::pair<glm::dvec2, glm::dvec2> Pane(glm::dvec2 p) const {
+    if (session_.layout != Layout::kGrid) return {glm::dvec2(0.0), size_};
+    for (int i = 0; i < session_.grid_panes; ++i) {
+      const glm::dvec4 cell(GridCell(i, session_.grid_panes, glm::vec2(size_)));
+      if (p.x >= cell.x && p.y >= cell.y && p.x < cell.x + cell.z && p.y < cell.y + cell.w) return {glm::dvec2(cell), glm::dvec2(cell.z, cell.w)};
+    }
+    return {glm::dvec2(0.0), size_};
+  }
+
+  // What the last whole picture has at 0 … 1 across a pane; nothing where there is none.
+  std::optional<std::size_t> PixelAt(glm::dvec2 p) const {
+    if (!state_.pixels || p.x < 0.0 || p.y < 0.0 || p.x >= 1.0 || p.y >= 1.0) return std::nullopt;
+    const auto x = static_cast<std::size_t>(p.x * state_.pixels->width), y = static_cast<std::size_t>(p.y * state_.pixels->height);
+    return y * static_cast<std::size_t>(state_.pixels->width) + x;
+  }
+
+  void Pointer(PanelContext& context) {
+    const ImGuiIO& io = ImGui::GetIO();
+    // A drag ends where the button went up.
+    const glm::dvec2 mouse = drag_ != Drag::kNone && inputs.buttons == 0 ? inputs.release - origin_ : Mouse();
+    const glm::dvec2 press = inputs.press - origin_;
+    // In the frame of a press its own place counts: the pointer may have gone on since.
+    const bool clicked = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
+    const glm::dvec2 at = clicked ? press : mouse;
+    const auto [pane_origin, pane_size] = Pane(drag_ == Drag::kNone ? at : pressed_);
+    const bool free = drag_ == Drag::kNone && !io.WantCaptureMouse && Inside(at);
+    Camera& camera = session_.scene.camera;
+
+    const bool alt = io.KeyAlt;
+    const bool maya = session_.navigation == Navigation::kMaya;
+    const bool near_wipe = session_.layout == Layout::kWipe && std::abs(at.x - session_.wipe * size_.x) < 0.5 * unit_;
+    const bool on_gizmo = !bare_ && session_.layout != Layout::kGrid && drag_ != Drag::kOrbit && drag_ != Drag::kPan &&
+                          gizmo_.Run(session_, origin_, size_, at, free && !near_wipe && !alt);
+    context.over_wipe = drag_ == Drag::kWipe || (free && near_wipe && !gizmo_.dragging());
+    if (context.over_wipe) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+
+    if (free && !gizmo_.dragging()) {
+      if (clicked) pressed_ = dragged_ = press;
+      if (ImGui::IsMouseClicked(0)) {
+        if (near_wipe && !alt) drag_ = Drag::kWipe;
+        else if (!on_gizmo) drag_ = maya && alt ? Drag::kOrbit : Drag::kPending;
+      } else if (ImGui::IsMouseClicked(2)) {
+        drag_ = maya ? (alt ? Drag::kPan : Drag::kNone) : io.KeyShift ? Drag::kPan : io.KeyCtrl ? Drag::kDolly : Drag::kOrbit;
+      } else if (ImGui::IsMouseClicked(1) && (maya && alt)) {
+        drag_ = Drag::kDolly;
+      }
+      if (io.MouseWheel != 0.0f) Dolly(camera, std::pow(0.9, io.MouseWheel));
+    }
+    if (drag_ == Drag::kPending && glm::distance(mouse, pressed_) > kClickReach && !maya) {
+      drag_ = io.KeyShift ? Drag::kPan : Drag::kOrbit;
+    }
+    const glm::dvec2 moved = mouse - std::exchange(dragged_, mouse);
+    const double per_pixel = 2.0 / std::max(pane_size.y, 1.0);  // rad: half a turn for a drag of 1.6 heights
+    if (drag_ == Drag::kOrbit) Orbit(camera, -moved.x * per_pixel, moved.y * per_pixel);
+    if (drag_ == Drag::kPan) Pan(camera, moved, pane_size);
+    if (drag_ == Drag::kDolly) Dolly(camera, std::exp((moved.y - moved.x) * per_pixel));
+    if (drag_ == Drag::kWipe) session_.wipe = static_cast<float>(std::clamp(mouse.x / size_.x, 0.0, 1.0));
+    if (drag_ != Drag::kNone && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1) && !ImGui::IsMouseDown(2)) {
+      if (drag_ == Drag::kPending) Click((pressed_ - pane_origin) / pane_size);
+      drag_ = Drag::kNone;
+    }
+    if (session_.inspected) Inspect();
+  }
+
+  void Click(glm::dvec2 at) {
+    const auto pixel = PixelAt(at);
+    if (!pixel) return;
+    if (ImGui::GetIO().KeyShift) {
+      session_.inspected = at;
+      return;
+    }
+    const int kind = static_cast<int>(std::abs(state_.pixels->position[*pixel].w));
+    session_.light = kind >= 2 ? kind - 2 : -1;
+    if (kind < 2) session_.inspected.reset();
+  }
+
+  void Inspect() {
+    const auto pixel = PixelAt(*session_.inspected);
+    if (!pixel) return;
+    if (inspected_pixels_ != state_.pixels || inspected_at_ != *session_.inspected || inspected_lobe_ != session_.lobe) {
+      inspected_pixels_ = state_.pixels;
+      inspected_at_ = *session_.inspected;
+      inspected_lobe_ = session_.lobe;
+      inspection_ = InspectPixel(session_.scene, *state_.pixels, *pixel, session_.lobe);
+    }
+    inspection_.values.clear();
+    for (const ShadedVariant& shaded : state_.variants) {
+      if (!shaded.image || shaded.image->size() != state_.pixels->size()) continue;
+      const glm::vec3 v = session_.lobe == Lobe::kTotal     ? shaded.image->Total(*pixel)
+                          : session_.lobe == Lobe::kDiffuse ? shaded.image->diffuse[*pixel]
+                                                            : shaded.image->specular[*pixel];
+      inspection_.values.emplace_back(shaded.variant.name, v);
+    }
+  }
+
+  void Keys() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const std::vector<Inputs::Key> keys = std::exchange(inputs.keys, {});
+    if (io.WantTextInput) return;
+    for (const ImWchar c : io.InputQueueCharacters) {
+      if (c == '?') help_ = !help_;
+      if (c == '[') session_.exposure -= 1.0 / 3.0;
+      if (c == ']') session_.exposure += 1.0 / 3.0;
+    }
+    for (const auto& [key, modifiers] : keys) {
+      (modifiers & GLFW_MOD_CONTROL) != 0 ? Command(key, (modifiers & GLFW_MOD_SHIFT) != 0) : Key(key);
+    }
+  }
+
+  void Command(int key, bool shift) {
+    switch (key) {
+      case GLFW_KEY_Z: return shift ? session_.Redo() : session_.Undo();
+      case GLFW_KEY_Y: return session_.Redo();
+      case GLFW_KEY_S: return Save();
+      case GLFW_KEY_Q: return glfwSetWindowShouldClose(window_.window, GLFW_TRUE);
+      default: return;
+    }
+  }
+
+  void Key(int key) {
+    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_5) session_.layout = static_cast<Layout>(key - GLFW_KEY_1);
+    switch (key) {
+      case GLFW_KEY_ESCAPE: help_ = false, session_.light = -1; break;
+      case GLFW_KEY_TAB: bare_ = !bare_; break;
+      case GLFW_KEY_F12: wanted_shot_ = Numbered(".png"); break;
+      case GLFW_KEY_F11: wanted_shot_ = Numbered(".exr"); break;
+      case GLFW_KEY_HOME: session_.exposure = 0.0; break;
+      case GLFW_KEY_G: session_.gizmo = GizmoMode::kMove; break;
+      case GLFW_KEY_R: session_.gizmo = GizmoMode::kTurn; break;
+      case GLFW_KEY_S: session_.gizmo = GizmoMode::kScale; break;
+      case GLFW_KEY_X: std::swap(session_.panes[0], session_.panes[1]); break;
+      case GLFW_KEY_A: ExposeAutomatically(); break;
+      case GLFW_KEY_F: {
+        const auto [pane_origin, pane_size] = Pane(Mouse());
+        const auto pixel = PixelAt((Mouse() - pane_origin) / pane_size);
+        if (pixel && state_.pixels->position[*pixel].w != 0.0f) Focus(session_.scene.camera, glm::dvec3(state_.pixels->position[*pixel]));
+        break;
+      }
+      default: break;
+    }
+  }
+
+  // The brightest twentieth of what is shaded just below white.
+  void ExposeAutomatically() {
+    const ShadedVariant* shaded = Shown(0);
+    if (shaded == nullptr || !shaded->image) return;
+    const double bright = LuminancePercentile(*shaded->image, 0.95);
+    if (bright > 0.0) session_.exposure = std::log2(0.8 / bright) - session_.scene.exposure;
+  }
+
+  // ---------------------------------------------------------------------------------------------- files
+
+  // On the picture, and where the program was started from.
+  void Say(const std::string& text, bool trouble = false) {
+    fmt::print(stderr, "{}\n", text);
+    message_ = text;
+    trouble_ = trouble;
+    said_ = Clock::now();
+    redraw_ = std::max(redraw_, 2);
+  }
+
+  void Save() {
+    try {
+      session_.Save();
+      watch_.SetScene(session_.scene.file);
+      Say("saved " + session_.scene.file.string());
+    } catch (const std::exception& error) {
+      Say(error.what(), true);
+    }
+  }
+
+  // The first name that is free: gloss_0001.png.
+  fs::path Numbered(const std::string& extension) const {
+    for (int i = 1;; ++i) {
+      fs::path name = fmt::format("{}_{:04}{}", session_.scene.name, i, extension);
+      if (!fs::exists(name)) return name;
+    }
+  }
+
+  void Shoot(const fs::path& file, glm::ivec2 framebuffer) {
+    try {
+      if (file.extension() == ".exr") {
+        const ShadedVariant* shaded = Shown(0);
+        if (shaded == nullptr || !shaded->image) throw InputError(fmt::format("{}: no picture; expected pane A to be shaded", file.string()));
+        WriteExr(file, *shaded->image);
+      } else {
+        const auto width = static_cast<std::size_t>(framebuffer.x), height = static_cast<std::size_t>(framebuffer.y);
+        std::vector<std::uint8_t> rows(3 * width * height), picture(rows.size());
+        const GladGLContext& gl = window_.gl;
+        gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+        gl.ReadBuffer(GL_BACK);
+        gl.ReadPixels(0, 0, framebuffer.x, framebuffer.y, GL_RGB, GL_UNSIGNED_BYTE, rows.data());
+        for (std::size_t y = 0; y < height; ++y) {
+          std::copy_n(&rows[3 * width * (height - 1 - y)], 3 * width, &picture[3 * width * y]);
+        }
+        WritePngCodes(file, picture, framebuffer.x);
+      }
+      Say("wrote " + file.string());
+    } catch (const std::exception& error) {
+      if (options_.frames > 0) throw;
+      Say(error.what(), true);
+    }
+  }
+
+  // For scripts: so many frames of the whole picture, the screenshot, and out.
+  void Leave() {
+    if (options_.frames <= 0 || !state_.full || state_.job != submitted_ || done_) return;
+    redraw_ = std::max(redraw_, 1);
+    if (++drawn_ < options_.frames) return;
+    done_ = true;
+    if (!options_.screenshot.empty()) wanted_shot_ = options_.screenshot;
+    for (const ShadedVariant& variant : state_.variants) {
+      if (!variant.error.empty()) throw InputError(variant.error);
+    }
+    if (!state_.error.empty()) throw InputError(state_.error);
+  }
+
+  // Type at the monitor's scale.
+  void Scale() {
+    float x = 1.0f, y = 1.0f;
+    glfwGetWindowContentScale(window_.window, &x, &y);
+    unit_ = std::round(16.0f * std::clamp(std::max(x, y), 0.5f, 4.0f));
+    widgets::ApplyStyle(unit_);
+  }
+
+  const ViewOptions& options_;
+  GlfwWindow& window_;
+  Worker& worker_;
+  Session& session_;
+  Display display_;
+  Watch watch_;
+  Gizmo gizmo_;
+  ViewState state_;
+  Inspection inspection_;
+  std::shared_ptr<const SurfacePixels> inspected_pixels_;
+  glm::dvec2 inspected_at_{-1.0};
+  Lobe inspected_lobe_ = Lobe::kTotal;
+  std::future<Scene> loading_;
+
+  ViewJob last_;
+  std::uint64_t last_geometry_ = 0, submitted_ = 0, full_job_ = 0, shown_job_ = 0, library_ = 0;
+  Clock::time_point submitted_at_{}, last_frame_{}, said_{};
+  std::vector<std::pair<std::uint64_t, Clock::time_point>> waiting_;  // jobs whose picture is not yet seen, and their input
+  Figures figures_;
+
+  glm::dvec2 origin_{0.0}, size_{16.0};  // of the picture, in the window's units
+  Drag drag_ = Drag::kNone;
+  glm::dvec2 pressed_{0.0}, dragged_{0.0};
+  std::string message_, told_;
+  fs::path wanted_shot_;
+  std::shared_ptr<const RadianceImage> floor_of_;
+  double floor_ = 0.0;
+  float unit_ = 16.0f;
+  int redraw_ = 3, drawn_ = 0;
+  bool bare_ = false, help_ = false, trouble_ = false, done_ = false;
+};
+
+void WatchInputs(GLFWwindow* window) {
+  glfwSetCursorPosCallback(window, [](GLFWwindow*, double, double) { Noticed(); });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* source, int, int action, int) {
+    glm::dvec2& place = action == GLFW_PRESS ? inputs.press : inputs.release;
+    glfwGetCursorPos(source, &place.x, &place.y);
+    inputs.buttons = std::max(inputs.buttons + (action == GLFW_PRESS ? 1 : -1), 0);
+    Noticed();
+  });
+  glfwSetScrollCallback(window, [](GLFWwindow*, double, double) { Noticed(); });
+  glfwSetKeyCallback(window, [](GLFWwindow*, int key, int, int action, int modifiers) {
+    if (action == GLFW_PRESS) inputs.keys.push_back({key, modifiers});
+    Noticed();
+  });
+  glfwSetCharCallback(window, [](GLFWwindow*, unsigned) { Noticed(); });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow*, int, int) { Noticed(); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow*) { inputs.any = true; });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow*, int) { inputs.any = true; });
+}
+
+// The panes to begin with: those that were asked for, else LTC beside the reference.
+void ChoosePanes(const ViewOptions& options, Session& session) {
+  const ShaderLibrary library = options.shader_folder.empty() ? ShaderLibrary() : ShaderLibrary(options.shader_folder);
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  for (const std::string& name : options.techniques) {
+    const Variant variant = ParseVariant(techniques, name);
+    if (const auto why = WhyUnsupported(variant, session.scene)) {
+      throw InputError(fmt::format("{}: {}; expected a technique that supports the scene", session.scene.file.string(), *why));
+    }
+  }
+  const char* const others[] = {"ltc", "reference", "hill", "point"};
+  std::vector<std::string> names = options.techniques;
+  for (const char* other : others) {
+    if (names.size() < 4 && std::find(names.begin(), names.end(), other) == names.end()) names.emplace_back(other);
+  }
+  for (std::size_t i = 0; i < 4; ++i) session.panes[i].name = names[std::min(i, names.size() - 1)];
+  const std::vector<std::string> layouts{"single", "wipe", "difference", "flicker", "grid"};
+  const std::size_t given = options.techniques.size();
+  const std::string layout = !options.layout.empty() ? options.layout : given == 1 ? "single" : given > 2 ? "grid" : "wipe";
+  session.layout = static_cast<Layout>(std::find(layouts.begin(), layouts.end(), layout) - layouts.begin());
+  if (given > 2) session.grid_panes = static_cast<int>(std::min<std::size_t>(given, 4));
+}
+
+}  // namespace
+
+void RunView(const ViewOptions& options) {
+  Scene scene = OpenScene(options.scene);
+  const GlfwLibrary glfw;
+  Remembered remembered = Remembered::Load();
+  Worker worker(options.context, options.shader_folder, [] { glfwPostEmptyEvent(); });
+  Session session(std::move(scene));
+  session.navigation = static_cast<Navigation>(remembered.navigation);
+  ChoosePanes(options, session);
+  GlfwWindow window(options.size.value_or(remembered.size), session.scene.name + " – AreaLab");
+  WatchInputs(window.window);
+  const ImGuiLibrary imgui(window.window);
+  View(options, window, worker, session).Run();
+  if (!options.size) glfwGetWindowSize(window.window, &remembered.size.x, &remembered.size.y);
+  remembered.navigation = static_cast<int>(session.navigation);
+  remembered.Save();
+}
+
+}  // namespace arealab

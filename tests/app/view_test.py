@@ -1,0 +1,312 @@
+#!/usr/bin/python3
+"""The window as a person uses it, under Xvfb with real events (Debian: xvfb, xdotool).
+
+usage: view_test.py AREALAB FOLDER
+FOLDER keeps the screenshots of the last run.
+"""
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import time
+import tomllib
+import unittest
+import zlib
+from pathlib import Path
+
+BAR, COLUMN = 46, 344  # px: height of the bar, width of the column (2.9 and 21.5 heights of the type)
+WINDOW = (1100, 600)
+WIDTH = WINDOW[0] - COLUMN  # of the picture
+LIGHT = (WIDTH // 2, 176)  # where the scene's light has its centre
+PROGRAM = FOLDER = None
+DISPLAY = None
+
+SCENE = """# A panel over a floor
+[camera]
+position = [0.0, -4.0, 1.9]
+target = [0.0, 0.35, 0.15]
+
+[[material]]
+name = "floor"
+base_color = 0.3
+roughness = 0.5  # as sanded
+
+[[surface]]
+type = "plane"
+size = [6.0, 6.0]
+material = "floor"
+
+[[light]]
+name = "panel"
+shape = "rectangle"
+position = [0.0, 1.9, 0.75]  # metres
+normal = [0.0, -1.0, 0.0]
+size = [2.0, 0.9]
+radiance = 3.0
+"""
+
+TECHNIQUE = """/*---
+summary = "One colour"
+citation = "none"
+author_note = "for a test"
+shapes = ["rectangle"]
+lobes = ["diffuse", "specular"]
+brdfs = ["ggx"]
+effects = ["fresnel"]
+
+[[knob]]
+name = "level"
+label = "Level"
+unit = ""
+initial = %s
+min = 0.0
+max = 1.0
+---*/
+#include "surface.glsl"
+#include "brdf.glsl"
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  %s
+}
+"""
+WHOLE = "return Radiance(vec3(knob_level), vec3(0.0));"
+
+
+def read_png(file):
+    """(width, height, rows of RGB bytes) of an 8-bit RGB PNG."""
+    data = Path(file).read_bytes()
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack(">IIBB", data[at + 8:at + 18])
+            assert (depth, color) == (8, 2), (depth, color)
+        elif kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += length + 12
+    raw, stride = zlib.decompress(packed), 3 * width
+    rows, before = [], bytearray(stride)
+    for y in range(height):
+        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        if kind == 1:
+            for i in range(3, stride):
+                row[i] = (row[i] + row[i - 3]) & 255
+        elif kind == 2:
+            row = bytearray((a + b) & 255 for a, b in zip(row, before))
+        elif kind == 3:
+            for i in range(stride):
+                row[i] = (row[i] + ((row[i - 3] if i >= 3 else 0) + before[i]) // 2) & 255
+        elif kind == 4:
+            for i in range(stride):
+                a, b, c = row[i - 3] if i >= 3 else 0, before[i], before[i - 3] if i >= 3 else 0
+                p = a + b - c
+                pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
+                row[i] = (row[i] + (a if pa <= pb and pa <= pc else b if pb <= pc else c)) & 255
+        rows.append(bytes(row))
+        before = row
+    return width, height, rows
+
+
+def until(condition, what, seconds=20.0):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        result = condition()
+        if result:
+            return result
+        time.sleep(0.05)
+    raise AssertionError(f"no {what} within {seconds} s")
+
+
+def environment():
+    return dict(os.environ, DISPLAY=DISPLAY, XDG_CONFIG_HOME=str(FOLDER / "config"), XDG_CACHE_HOME=str(FOLDER / "cache"),
+                XDG_STATE_HOME=str(FOLDER / "state"))
+
+
+def arealab(*arguments, **extra):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=FOLDER, timeout=60,
+                          env=environment() | extra)
+
+
+class Window:
+    """A running `arealab view`, and the hands that use it."""
+
+    def __init__(self, name, *arguments):
+        self.log_file = FOLDER / f"{name}.log"
+        self.shots = 0
+        self.name = name
+        with open(self.log_file, "w") as log:
+            self.process = subprocess.Popen([PROGRAM, "view", *map(str, arguments), "--size", "{}x{}".format(*WINDOW), "--context", "osmesa", "--json"],
+                                            stdout=subprocess.PIPE, stderr=log, text=True, cwd=FOLDER, env=environment())
+        self.do("search", "--sync", "--name", "AreaLab")
+
+    def do(self, *arguments):
+        subprocess.run(["xdotool", *map(str, arguments)], check=True, env=environment(), timeout=30, capture_output=True)
+
+    def log(self):
+        return self.log_file.read_text()
+
+    def drag(self, begin, end, steps=6):
+        self.do("mousemove", *begin, "mousedown", "1")
+        for i in range(1, steps + 1):
+            self.do("mousemove", *(round(a + (b - a) * i / steps) for a, b in zip(begin, end)))
+        self.do("mouseup", "1")
+
+    def shot(self):
+        """The window as it is seen, once it has been written."""
+        count = self.log().count("wrote ")
+        self.do("key", "F12")
+        until(lambda: self.log().count("wrote ") > count, "screenshot")
+        file = FOLDER / self.log().rsplit("wrote ", 1)[1].strip().splitlines()[0]
+        self.shots += 1
+        kept = FOLDER / f"{self.name}_{self.shots}.png"
+        shutil.move(file, kept)
+        return read_png(kept)
+
+    def picture(self):
+        """The picture at full size: the same twice, since what is coarse gives way to what is whole."""
+        last = None
+
+        def settled():
+            nonlocal last
+            _, _, rows = self.shot()
+            inner = [row[3 * 8:3 * (WIDTH - 8)] for row in rows[BAR + 40:WINDOW[1] - 130]]
+            same = inner == last
+            last = inner
+            return last if same else None
+
+        return until(settled, "picture at rest", 30.0)
+
+    def leave(self):
+        self.do("key", "ctrl+q")
+        out, _ = self.process.communicate(timeout=20)
+        return json.loads(out)
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+
+
+class ViewTest(unittest.TestCase):
+    def window(self, *arguments):
+        window = Window(self.id().rsplit(".", 1)[1], *arguments)
+        self.addCleanup(window.end)
+        return window
+
+    def scene(self):
+        file = FOLDER / f"{self.id().rsplit('.', 1)[1]}.toml"
+        file.write_text(SCENE)
+        return file
+
+    def test_without_a_display_it_says_so(self):
+        result = arealab("view", "gloss", DISPLAY="", WAYLAND_DISPLAY="")
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, r"^no display: .*; expected .*\n$")
+
+    def test_bad_arguments_are_one_line(self):
+        for arguments, part in [(("nowhere",), "nowhere"), (("gloss", "--technique", "karis"), "sphere"),
+                                (("gloss", "--screenshot", "a.jpg"), ".png or .exr")]:
+            result = arealab("view", *arguments)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+            self.assertIn(part, result.stderr)
+
+    def test_a_screenshot_is_the_render_of_the_same_variant(self):
+        scene = self.scene()
+        for technique in ("ltc", "drobot@published"):
+            arealab("view", scene, "--bare", "--technique", technique, "--size", "320x200", "--frames", 2, "--screenshot", "seen.png",
+                    "--context", "osmesa")
+            arealab("render", scene, "--technique", technique, "--size", "320x200", "-o", "rendered.png", "--context", "osmesa")
+            seen, rendered = read_png(FOLDER / "seen.png"), read_png(FOLDER / "rendered.png")
+            self.assertEqual(seen[:2], (320, 200))
+            worst = max(max(abs(a - b) for a, b in zip(x, y)) for x, y in zip(seen[2], rendered[2]))
+            self.assertLessEqual(worst, 1)
+            self.assertGreater(max(map(max, rendered[2])), 200)
+
+    def test_orbit_and_wipe(self):
+        window = self.window(self.scene(), "--technique", "ltc", "--technique", "point")
+        first = window.picture()
+        window.drag((100, 480), (200, 460))
+        turned = window.picture()
+        self.assertFalse(first == turned)
+        # The wipe's line is bright at its place, from the top of the picture to its foot.
+        line = lambda rows, x: all(rows[y][3 * x] > 120 for y in range(BAR + 60, WINDOW[1] - 60, 40))
+        middle = WIDTH // 2
+        _, _, rows = window.shot()
+        self.assertTrue(line(rows, middle))
+        window.drag((middle, 480), (middle + 150, 480))
+        rows = until(lambda: (lambda r: r if line(r, middle + 150) else None)(window.shot()[2]), "wipe at its new place")
+        self.assertFalse(line(rows, middle))
+        figures = window.leave()
+        self.assertGreater(figures["input_to_picture_ms"]["count"], 0)
+
+    def test_move_a_light_type_a_roughness_undo_save_reopen(self):
+        file = self.scene()
+        window = self.window(file, "--technique", "ltc")
+        window.picture()
+        window.do("mousemove", LIGHT[0] + 40, LIGHT[1] - 20, "click", "1")
+        time.sleep(0.5)
+        window.drag((LIGHT[0] + 70, LIGHT[1]), (LIGHT[0] + 130, LIGHT[1]))  # by the arrow along x
+        window.picture()
+        window.do("key", "ctrl+s")
+        until(lambda: "saved" in window.log(), "save")
+        moved = tomllib.loads(file.read_text())["light"][0]["position"]
+        self.assertGreater(moved[0], 0.2)
+        self.assertEqual(moved[1:], [1.9, 0.75])
+        self.assertIn("# metres", file.read_text())
+
+        window.do("mousemove", WIDTH + 108, 68, "click", "1")  # the tab with the materials
+        time.sleep(0.5)
+        window.do("mousemove", WIDTH + 250, 190, "keydown", "ctrl", "click", "1", "keyup", "ctrl")
+        time.sleep(0.5)
+        window.do("key", "ctrl+a", "type", "0.25")
+        time.sleep(0.3)
+        window.do("key", "Return")
+        window.picture()
+        window.do("key", "ctrl+s")
+        until(lambda: "roughness = 0.25  # as sanded" in file.read_text(), "saved roughness")
+        window.do("key", "ctrl+z")
+        time.sleep(0.3)
+        window.do("key", "ctrl+z")
+        window.picture()
+        window.do("key", "ctrl+s")
+        until(lambda: file.read_text() == SCENE, "file as it was before the edits")
+        window.leave()
+        self.assertEqual(arealab("render", file, "--technique", "ltc", "--size", "16x16", "-o", "again.png").returncode, 0)
+
+    def test_a_shader_is_read_again_broken_and_mended(self):
+        folder = FOLDER / "glsl" / "techniques"
+        folder.mkdir(parents=True, exist_ok=True)
+        for old in folder.iterdir():
+            old.unlink()
+        shader = folder / "mine.glsl"
+        shader.write_text(TECHNIQUE % (0.2, WHOLE))
+        window = self.window(self.scene(), "--glsl", folder.parent, "--technique", "mine")
+        first = window.picture()
+        shader.write_text(TECHNIQUE % (0.2, "return Radiance(vec3(knob_levle), vec3(0.0));"))
+        until(lambda: "mine.glsl:22:" in window.log(), "error with file and line")
+        self.assertTrue(window.picture() == first)  # the last good picture stays
+        shader.write_text(TECHNIQUE % (0.8, WHOLE))
+        until(lambda: window.picture() != first, "picture of the mended shader")
+        # Another file appears without a restart.
+        (folder / "other.glsl").write_text(TECHNIQUE % (0.5, WHOLE))
+        window.leave()
+
+
+if __name__ == "__main__":
+    PROGRAM, FOLDER = sys.argv[1], Path(sys.argv[2])
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    FOLDER.mkdir(parents=True)
+    reader, writer = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+                              pass_fds=[writer], stderr=subprocess.DEVNULL)
+    os.close(writer)
+    DISPLAY = ":" + os.read(reader, 16).decode().strip()
+    try:
+        unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
+    finally:
+        server.terminate()
+        server.wait()
