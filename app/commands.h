@@ -42,5 +42,6 @@ void AddFit(CLI::App& app, int& status);
 void AddCheck(CLI::App& app, int& status);
 void AddCost(CLI::App& app, int& status);
 void AddView(CLI::App& app, int& status);
+void AddStress(CLI::App& app, int& status);
 
 }  // namespace arealab

@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   arealab::AddCheck(app, status);
   arealab::AddCost(app, status);
   arealab::AddView(app, status);
+  arealab::AddStress(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

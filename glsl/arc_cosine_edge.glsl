@@ -13,8 +13,5 @@ float EdgeRatio(float d, float m, float share, float line2) {
 // Of the light itself, for the diffuse lobe.
 float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
 
-// Of a side of the light itself, never of one in the horizon.
-float SideEdgeRatio(float d, float m, float share, float line2) { return LambertEdgeRatio(d, m, share, line2); }
-
 // θ itself; `area` = |v0 × v1|.
 float EdgeAngle(float d, float m, float area) { return EdgeTheta(d, m); }

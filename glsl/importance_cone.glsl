@@ -21,6 +21,7 @@ float EnergyConeVersine(float alpha, float n_dot_v) { return min(2.0 * alpha * a
 // The cone's trace on the light's plane, taken as a disk [Drobot 2014, §1.3.4].
 struct Footprint {
   vec2 center;   // m, in the light's plane
+  vec2 offset;   // m, of the center from the foot of the point's perpendicular: its digits are lost in the center's
   float radius;  // m; 0 where the cone misses the plane
 };
 
@@ -36,10 +37,11 @@ Footprint ConeFootprint(vec3 point, vec3 mirror, float cone_versine, bool keep_s
   float cosine = max(-mirror.z, kMinConeCosine);
   float along = sqrt(mirror.x * mirror.x + mirror.y * mirror.y);
   float reach = point.z / cosine;
-  float tilt = mirror.z > 0.0 ? atan(mirror.z, along) : 0.0;
+  float tilt = mirror.z > 0.0 ? Arctangent(mirror.z, along) : 0.0;
   float half_angle = max(AngleFromVersine(cone_versine) - tilt, 0.0);
   Footprint footprint;
-  footprint.center = vec2(point.x, point.y) + vec2(mirror.x, mirror.y) * reach;
+  footprint.offset = vec2(mirror.x, mirror.y) * reach;
+  footprint.center = vec2(point.x, point.y) + footprint.offset;
   if (keep_solid_angle) {
     float sine = sin(0.5 * half_angle);
     footprint.radius = reach * sine * 2.0 * inversesqrt(cosine);  // π radius² cosine / reach² = 4π sin²(half angle / 2)
@@ -51,7 +53,7 @@ Footprint ConeFootprint(vec3 point, vec3 mirror, float cone_versine, bool keep_s
 
 // The part of a light that a footprint covers.
 struct LitPart {
-  vec2 center;  // m, in the light's plane, on the light where the area is not 0
+  vec2 shift;  // m, of its center from the footprint's; the center is on the light where the area is not 0
   float area;   // m²
 };
 
@@ -60,7 +62,7 @@ LitPart FootprintOnDisk(Footprint footprint, float radius) {
   float center_distance = length(footprint.center);
   float smaller = min(footprint.radius, radius);
   LitPart part;
-  part.center = footprint.center * OverlapCenter(radius, footprint.radius, center_distance);
+  part.shift = footprint.center * (OverlapCenter(radius, footprint.radius, center_distance) - 1.0);
   part.area = kPi * smaller * smaller * SmoothstepOverlap(radius, footprint.radius, center_distance);
   return part;
 }
@@ -68,10 +70,12 @@ LitPart FootprintOnDisk(Footprint footprint, float radius) {
 // [Drobot 2014, eq. 1.23, with the signs of its extent corrected]: the footprint as the square of equal area.
 LitPart FootprintOnRectangle(Footprint footprint, vec2 half_size) {
   float half_side = footprint.radius * (0.5 * sqrt(kPi));
-  vec2 low = clamp(footprint.center - vec2(half_side), -half_size, half_size);
-  vec2 high = clamp(footprint.center + vec2(half_side), -half_size, half_size);
+  // Widths and shifts from the half sides, not from the ends' places: of a small footprint on a large light, or the reverse, those
+  // have no digits left.
+  vec2 away = abs(footprint.center);
+  vec2 width = clamp(vec2(half_side) + half_size - away, vec2(0.0), 2.0 * min(vec2(half_side), half_size));
   LitPart part;
-  part.center = 0.5 * (low + high);
-  part.area = (high.x - low.x) * (high.y - low.y);
+  part.shift = -sign(footprint.center) * clamp(0.5 * (away + vec2(half_side) - half_size), max(away - half_size, vec2(0.0)), away);
+  part.area = width.x * width.y;
   return part;
 }

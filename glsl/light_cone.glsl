@@ -7,6 +7,7 @@
 // No other eigenvalue is needed for F: with D² = det G, b = tr B − |C|² and k the sum of G's principal minors,
 //   μ³ + bμ² + kμ − D² = 0,   |F| = D/√(μ²(2μ + b) + D²),   F ∥ adj(μI + B) C = μ((μ + tr B) C − B C) + adj(B) C.
 // Form factors do not depend on lengths: all of this is scaled by 1/(|C|² + tr B), so that nothing overflows.
+#include "directions.glsl"
 #include "ltc.glsl"
 #include "path.glsl"
 
@@ -65,7 +66,8 @@ struct SphereView {
   float sin2;      // of its angular radius
 };
 
-// From inside, where a sphere sends nothing, it is taken as nearly touched from outside: sin² at most 1 − 1e-6.
+// From inside, where a sphere sends nothing, it is taken as nearly touched from outside: sin² at most 1 − 2⁻²⁰, which float holds exactly: it has
+// no digits to spare in what is left to 1.
 SphereView ViewSphere(Light light, vec3 position, ShadingFrame frame) {
   vec3 to_center = light.center - position;
   float distance2 = dot(to_center, to_center);
@@ -73,7 +75,7 @@ SphereView ViewSphere(Light light, vec3 position, ShadingFrame frame) {
   SphereView sphere;
   sphere.direction = vec3(dot(frame.tangent, to_center), dot(frame.bitangent, to_center), dot(frame.normal, to_center)) * inverse;
   if (distance2 < 1e-30) sphere.direction = vec3(0.0, 0.0, 1.0);
-  sphere.sin2 = min(light.half_size.x * inverse * light.half_size.x * inverse, 1.0 - 1e-6);
+  sphere.sin2 = min(light.half_size.x * inverse * light.half_size.x * inverse, 1.0 - 9.5367431640625e-7);
   return sphere;
 }
 
@@ -220,15 +222,15 @@ vec3 ClippedConeVector(LightCone cone) {
   float kappa = sqrt((ma - mb) / sum_a);
   float j = sqrt(max((ma - mb) / sum_b, 1e-8));
   float along_e1 = root_mb * root_mu / sum_a * ArtanhSpan(kappa, from.y, to.y);
-  float along_e2 = root_ma * root_mu / sum_b * atan(j * (to.x - from.x), 1.0 + j * j * from.x * to.x) / j;
+  float along_e2 = root_ma * root_mu / sum_b * Arctangent(j * (to.x - from.x), 1.0 + j * j * from.x * to.x) / j;
   // The turn of the rim's image on the sphere, in [0, 2π).
   vec2 from_sphere = vec2(from.x * inversesqrt(sum_b), from.y * inversesqrt(sum_a));
   vec2 to_sphere = vec2(to.x * inversesqrt(sum_b), to.y * inversesqrt(sum_a));
-  float psi = atan(from_sphere.x * to_sphere.y - from_sphere.y * to_sphere.x, dot(from_sphere, to_sphere));
+  float psi = Arctangent(from_sphere.x * to_sphere.y - from_sphere.y * to_sphere.x, dot(from_sphere, to_sphere));
   if (psi < 0.0) psi += 2.0 * kPi;
   vec3 p_from = root_mu * e3 + root_ma * from.x * e1 + root_mb * from.y * e2;
   vec3 p_to = root_mu * e3 + root_ma * to.x * e1 + root_mb * to.y * e2;
-  float closing = atan(max(CrossZ(p_to, p_from), 0.0), p_to.x * p_from.x + p_to.y * p_from.y);
+  float closing = Arctangent(max(CrossZ(p_to, p_from), 0.0), p_to.x * p_from.x + p_to.y * p_from.y);
   vec3 f = (along_e2 * e2 - along_e1 * e1 + whole.size * psi * e3) * (0.5 / kPi);
   // Next to either end ψ may leap between 0 and 2π, by F: what the clip adds to F lies between.
   return vec3(f.x, f.y, clamp(f.z + closing * (0.5 / kPi), max(height, 0.0), whole.size));

@@ -39,8 +39,10 @@ Light LoadLight(int i) {
 }
 
 // Turns a two-sided light's frame so that its lit side faces the point, right-handed as before. False where no lit side
-// does: the point is in the plane or behind it. A sphere faces everything.
+// does: the point is in the plane or behind it. A sphere faces everything. A light without an area is none, and one that is
+// thinner than 1e-7 of its length neither: no float tells its sides apart.
 bool FaceLight(inout Light light, vec3 position) {
+  if (light.area <= max(1e-7 * (light.products.x + light.products.y), 1e-30)) return false;
 #if EFFECT_RECTANGLE || EFFECT_DISK
   if (light.shape != SHAPE_SPHERE) {
     float height = dot(light.normal, position - light.center);

@@ -5,6 +5,7 @@
 //   F = 1/(2π) Σ θ_i (v_i × v_{i+1}) / |v_i × v_{i+1}|,
 // θ_i the angle between successive corners. An option "edge" gives the quotient θ/|v_i × v_{i+1}|; a cross product along a
 // side of a parallelogram is linear in where the side lies, so few of them are ever formed.
+#include "lit.glsl"
 #include "surface.glsl"
 
 // In the shading frame (tangent, bitangent, normal) and in the light's own axes. The light faces the point:
@@ -36,3 +37,33 @@ float CrossZ(vec3 a, vec3 b) { return a.x * b.y - a.y * b.x; }
 
 // A form factor lies in [0, 1]; rounding can leave that range.
 float AsFormFactor(float value) { return clamp(value, 0.0, 1.0); }
+
+// A rectangle that is small against its distance.
+//
+// There the terms of opposite edges differ by size over distance of themselves, and their sum loses as many digits: 1e-7 · distance/size
+// of it, all of it at 1e7. The centre alone is wrong by (size/distance)²; both are 1.6e-5 where the half diagonal is 1/250 of the distance.
+const float kSmallRectangle = 1.6e-5;
+
+bool IsSmallRectangle(vec3 center, vec3 half_a, vec3 half_b) {
+  return dot(half_a, half_a) + dot(half_b, half_b) < kSmallRectangle * dot(center, center);
+}
+
+// Its vector form factor over its direction, by its centre; half_a × half_b towards the origin. `inverse`: 1/|center|.
+float SmallRectangleSize(vec3 center, vec3 half_a, vec3 half_b, float inverse) {
+  return max(-dot(cross(half_a * inverse, half_b * inverse), center * inverse), 0.0) * (4.0 / kPi);
+}
+
+vec3 SmallRectangleVector(vec3 center, vec3 half_a, vec3 half_b) {
+  float inverse = inversesqrt(dot(center, center));
+  return center * (inverse * SmallRectangleSize(center, half_a, half_b, inverse));
+}
+
+// The same of what is above the horizon: the mean height over it, as if the heights were spread evenly, in place of the centre's.
+vec3 ClippedSmallRectangle(vec3 center, vec3 half_a, vec3 half_b) {
+  float inverse = inversesqrt(dot(center, center));
+  float per_length = inverse * SmallRectangleSize(center, half_a, half_b, inverse);
+  float reach = abs(half_a.z) + abs(half_b.z);
+  float above = clamp(center.z, -reach, reach) + reach;
+  float height = center.z > reach ? center.z : above * above / max(4.0 * reach, 1e-30);
+  return vec3(center.x * per_length, center.y * per_length, height * per_length);
+}

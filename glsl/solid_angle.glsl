@@ -1,7 +1,7 @@
 #pragma once
 // The solid angle of a rectangle and of a disk. Dual: also compiles as C++.
 // `point` is the seeing point in the light's frame: centre at the origin, z along the lit side's normal, m; point.z > 0.
-#include "surface.glsl"
+#include "directions.glsl"
 
 // Two triangles after [Van Oosterom & Strackee 1983, eq. 8], their angles added as complex numbers; exact, sr, in [0, 2π).
 // The numerators are volumes, so a small or far rectangle keeps its digits.
@@ -22,7 +22,7 @@ float RectangleSolidAngle(vec3 point, vec2 half_size) {
   float n3 = volume * i3;
   float d1 = diagonal + (dot(u0, v1) + dot(u2, v1)) * i1;
   float d3 = diagonal + (dot(u0, v3) + dot(u2, v3)) * i3;
-  return 2.0 * atan(max(n1 * d3 + n3 * d1, 1e-30), d1 * d3 - n1 * n3);
+  return 2.0 * Arctangent(max(n1 * d3 + n3 * d1, 1e-30), d1 * d3 - n1 * n3);
 }
 
 // The disk's elliptic cone has the squared tangents a² = 4R²·g/Q (in the plane of symmetry) and b² = 4R²/Q (across), with

@@ -2,7 +2,7 @@
 // Caps of the unit sphere, what two of them share, and a sphere light seen as one. Dual: also compiles as C++.
 // A cap is held by its axis and its versine v = 1 − cos(angular radius), in [0, 2]: the cap's solid angle is 2π v, and
 // nothing cancels for the tiny caps of far lights and sharp lobes, where a cosine has lost all its digits.
-#include "surface.glsl"
+#include "directions.glsl"
 
 struct Cap {
   vec3 axis;      // unit
@@ -17,7 +17,7 @@ struct CapOverlap {
 
 // The angle in [0, π] whose versine is given.
 float AngleFromVersine(float versine) {
-  return atan(sqrt(max(versine * (2.0 - versine), 0.0)), 1.0 - versine);
+  return Arctangent(sqrt(max(versine * (2.0 - versine), 0.0)), 1.0 - versine);
 }
 
 // Of the angle between two unit vectors; half their squared distance keeps its digits where 1 − dot has none.
@@ -57,9 +57,9 @@ CapOverlap IntersectCaps(Cap cap0, Cap cap1) {
   CapOverlap overlap;
   if (triple2 > 0.0) {
     float triple = sqrt(triple2);  // sin d sin r0 sin φ0
-    float phi0 = atan(triple, x0);
-    float phi1 = atan(triple, x1);
-    float excess = 2.0 * atan(triple, 4.0 - v0 - v1 - vd);
+    float phi0 = Arctangent(triple, x0);
+    float phi1 = Arctangent(triple, x1);
+    float excess = 2.0 * Arctangent(triple, 4.0 - v0 - v1 - vd);
     float chord = triple / max(sin2_d, 1e-30);  // the guard is below the square of float's rounding
     overlap.area = max(2.0 * (phi0 * v0 + phi1 * v1 - excess), 0.0);
     overlap.moment = cap0.axis * (phi0 * sin2_0 - chord * x0) + cap1.axis * (phi1 * sin2_1 - chord * x1);
@@ -114,7 +114,7 @@ float SphereFormFactor(float cos_center, float versine) {
   float lit = max(cos_center, 0.0) * sin2;  // wholly above the horizon, or wholly below
   if (w2 > 0.0) {
     float w = sqrt(w2);
-    lit = (atan(w, cos_radius) + cos_center * sin2 * atan(w, -cos_center * cos_radius) - cos_radius * w) / kPi;
+    lit = (Arctangent(w, cos_radius) + cos_center * sin2 * Arctangent(w, -cos_center * cos_radius) - cos_radius * w) / kPi;
   }
   return clamp(lit, 0.0, 1.0);
 }

@@ -37,7 +37,7 @@ const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lam
                                        "ggx_disk",          "ggx_sphere",   "point_limit"};
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
-                                                "technique", "platform", "techniques", "tables", "published", "brdf"};
+                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf"};
 
 std::string Upper(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -94,7 +94,7 @@ class HeaderReader {
     }
     toml::table root = Parse(CutHeader(text));
     CheckKeys(root, {"summary", "citation", "author_note", "shapes", "lobes", "brdfs", "effects", "exact",
-                     "yardstick", "option", "knob", "tables", "published"});
+                     "yardstick", "option", "knob", "tables", "published", "ideal"});
     technique.summary = Line(root, "summary", 1);
     technique.citation = Line(root, "citation", 1);
     technique.author_note = Line(root, "author_note", 1);
@@ -104,7 +104,7 @@ class HeaderReader {
     CheckNeeds(root, technique);
     for (const toml::table* table : Tables(root, "knob")) ReadKnob(*table, technique);
     ReadTables(root, technique);
-    ReadPublished(root, technique);
+    ReadForms(root, technique);
     return technique;
   }
 
@@ -448,10 +448,15 @@ class HeaderReader {
   }
 
   // Options that [published] leaves out keep their default.
-  void ReadPublished(const toml::table& root, Technique& technique) const {
+  void ReadForms(const toml::table& root, Technique& technique) const {
     for (const Option& option : technique.options)
       technique.published[option.name] = option.choices.front().name;
-    const toml::table* section = Section(root, "published");
+    ReadForm(Section(root, "published"), technique, technique.published);
+    ReadForm(Section(root, "ideal"), technique, technique.ideal);
+  }
+
+  void ReadForm(const toml::table* section, const Technique& technique,
+                std::map<std::string, std::string>& form) const {
     if (!section) return;
     for (const auto& [key, node] : *section) {
       const Option& option = FindOption(technique, key.str(), LineOf(key.source()));
@@ -462,7 +467,7 @@ class HeaderReader {
         Fail(LineOf(node), fmt::format("unknown choice \"{}\" of option {}", choice, option.name),
              ExpectedNames(choice, names));
       }
-      technique.published[option.name] = choice;
+      form[option.name] = choice;
     }
   }
 

@@ -59,6 +59,8 @@ struct Technique {
   std::vector<Table> tables;
   std::map<std::string, std::string>
       published;  // option → choice of the form its author published; empty: no options
+  // option → choice that is the technique's own mathematics, with no shortcut of computation; what is not in it stays.
+  std::map<std::string, std::string> ideal;
 };
 
 // All techniques of the library, sorted by name. A wrong header throws InputError with file and line.

@@ -145,6 +145,16 @@ Variant PublishedVariant(const Technique& technique) {
   return variant;
 }
 
+Variant IdealVariant(const Variant& variant) {
+  Variant ideal = variant;
+  for (const auto& [option, choice] : variant.technique->ideal) {
+    Variant changed = ideal;
+    changed.options[option] = choice;
+    if (!WhyInconsistent(changed)) ideal = std::move(changed);
+  }
+  return ideal;
+}
+
 Variant ParseVariant(const std::vector<Technique>& techniques, std::string_view name) {
   std::string_view rest = name;
   const std::string technique_name(TakeUntil(rest, "@+"));

@@ -25,6 +25,10 @@ struct Variant {
 Variant DefaultVariant(const Technique& technique);
 Variant PublishedVariant(const Technique& technique);
 
+// The variant with no shortcut of computation, where its technique has any: [ideal] of its header, as far as the choices go together.
+// Computed in double, it is the mathematics that the variant's own numbers stand for.
+Variant IdealVariant(const Variant& variant);
+
 // Reads "ltc", "ltc@published", "ltc+clip=switch", "ltc@published+edge=acos". Throws InputError that lists what exists.
 Variant ParseVariant(const std::vector<Technique>& techniques, std::string_view name);
 

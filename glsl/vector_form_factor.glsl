@@ -10,8 +10,23 @@ struct VectorFormFactor {
   float height;  // F along the normal
 };
 
+// From the vector and its height.
+VectorFormFactor MakeVectorFormFactor(vec3 f, float height) {
+  VectorFormFactor result;
+  result.f = f;
+  float size2 = dot(f, f);
+  result.inverse = inversesqrt(max(size2, 1e-30));
+  result.size = size2 * result.inverse;
+  result.height = height;
+  return result;
+}
+
 // Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
 VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
+  if (!Lit(!IsSmallRectangle(center, half_a, half_b))) {
+    vec3 small = SmallRectangleVector(center, half_a, half_b);
+    return MakeVectorFormFactor(small, small.z);
+  }
   vec3 sum = half_a + half_b;
   vec3 difference = half_a - half_b;
   vec3 v0 = center + sum;
@@ -34,18 +49,19 @@ VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b) {
   float t2 = EdgeRatio(dot(v2, v3), l2 * l3, 2.0, dot(line2, line2));
   float t3 = EdgeRatio(dot(v3, v0), l3 * l0, 2.0, dot(line3, line3));
   vec3 f = (t0 - t2) * p_a + (t1 - t3) * p_b - (t0 + t1 + t2 + t3) * a_b;
-  VectorFormFactor result;
-  result.f = f * (0.5 / kPi);
-  float size2 = dot(result.f, result.f);
-  result.inverse = inversesqrt(max(size2, 1e-30));
-  result.size = size2 * result.inverse;
-  result.height = result.f.z;
-  return result;
+  f *= 0.5 / kPi;
+  return MakeVectorFormFactor(f, f.z);
 }
 
 // The same for the light itself, in its own axes, where the crosses are p × a = |a| (0, z, −y), p × b = |b| (−z, 0, x) and
 // a × b = |a||b| (0, 0, 1).
 VectorFormFactor LambertVector(RectangleView view) {
+  vec3 side_a = vec3(view.half_size.x, 0.0, 0.0);
+  vec3 side_b = vec3(0.0, view.half_size.y, 0.0);
+  if (!Lit(!IsSmallRectangle(view.in_plane, side_a, side_b))) {
+    vec3 small = SmallRectangleVector(view.in_plane, side_a, side_b);
+    return MakeVectorFormFactor(small, dot(view.horizon, small));
+  }
   float x0 = view.in_plane.x + view.half_size.x;
   float x1 = view.in_plane.x - view.half_size.x;
   float y0 = view.in_plane.y + view.half_size.y;
@@ -63,20 +79,15 @@ VectorFormFactor LambertVector(RectangleView view) {
   float along_y = y0 * y1;
   float a2 = view.half_size.x * view.half_size.x;
   float b2 = view.half_size.y * view.half_size.y;
-  float t0 = SideEdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0);
-  float t1 = SideEdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1);
-  float t2 = SideEdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1);
-  float t3 = SideEdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0);
+  float t0 = LambertEdgeRatio(along_x + row0, l0 * l1, 2.0, a2 * row0);
+  float t1 = LambertEdgeRatio(along_y + column1, l1 * l2, 2.0, b2 * column1);
+  float t2 = LambertEdgeRatio(along_x + row1, l2 * l3, 2.0, a2 * row1);
+  float t3 = LambertEdgeRatio(along_y + column0, l3 * l0, 2.0, b2 * column0);
   float alpha = view.half_size.x * (t0 - t2);
   float beta = view.half_size.y * (t1 - t3);
   float gamma = view.half_size.x * view.half_size.y * (t0 + t1 + t2 + t3);
   vec3 p = view.in_plane;
   vec3 f = vec3(-beta * p.z, alpha * p.z, beta * p.x - alpha * p.y - gamma);
-  VectorFormFactor result;
-  result.f = f * (0.5 / kPi);
-  float size2 = dot(result.f, result.f);
-  result.inverse = inversesqrt(max(size2, 1e-30));
-  result.size = size2 * result.inverse;
-  result.height = dot(view.horizon, result.f);
-  return result;
+  f *= 0.5 / kPi;
+  return MakeVectorFormFactor(f, dot(view.horizon, f));
 }

@@ -26,6 +26,7 @@ HorizonShares CutAtHorizon(float top, float rise_a, float rise_b) {
 
 // The vector form factor of what is above the horizon; its z is the form factor for a clamped cosine about +z. Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
 vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) {
+  if (!Lit(!IsSmallRectangle(center, half_a, half_b))) return ClippedSmallRectangle(center, half_a, half_b);
   float sign_a = half_a.z < 0.0 ? -2.0 : 2.0;
   float sign_b = half_b.z < 0.0 ? -2.0 : 2.0;
   vec3 a = half_a * sign_a;
@@ -61,23 +62,24 @@ vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) {
 }
 
 // The form factor of the light itself, above the horizon: in its own axes its sides are parallel to the axes, which leaves few products.
+// Heights over the horizon are taken there too: in float the light's two descriptions differ by more than what matters at its sides.
 float ClippedLambert(RectangleView view) {
-  float sign_a = view.half_a.z < 0.0 ? -2.0 : 2.0;
-  float sign_b = view.half_b.z < 0.0 ? -2.0 : 2.0;
-  vec3 a = view.half_a * sign_a;
-  vec3 b = view.half_b * sign_b;
-  vec3 c = view.center + 0.5 * (a + b);
-  HorizonShares k = CutAtHorizon(c.z, a.z, b.z);
-
+  if (!Lit(!IsSmallRectangle(view.center, view.half_a, view.half_b))) return ClippedSmallRectangle(view.center, view.half_a, view.half_b).z;
+  vec3 n = view.horizon;
+  float sign_a = n.x < 0.0 ? -2.0 : 2.0;
+  float sign_b = n.y < 0.0 ? -2.0 : 2.0;
   float side_x = view.half_size.x * sign_a;
   float side_y = view.half_size.y * sign_b;
   float x = view.in_plane.x + 0.5 * side_x;
   float y = view.in_plane.y + 0.5 * side_y;
+  float z = view.in_plane.z;
+  HorizonShares k = CutAtHorizon(n.x * x + n.y * y + n.z * z, n.x * side_x, n.y * side_y);
+
   float x0 = x - k.k0 * side_x;
   float y0 = y - k.k1 * side_y;
   float x4 = x - k.k2 * side_x;
   float y4 = y - k.k3 * side_y;
-  float z2 = view.in_plane.z * view.in_plane.z;
+  float z2 = z * z;
   float row0 = y0 * y0 + z2;  // squared distance from the line of edge v0 v1
   float row = y * y + z2;     // of c v3
   float column = x * x + z2;  // of v1 c
@@ -89,14 +91,15 @@ float ClippedLambert(RectangleView view) {
   float l4 = sqrt(y4 * y4 + column4);
   float side_x2 = side_x * side_x;
   float side_y2 = side_y * side_y;
-  float t0 = SideEdgeRatio(x0 * x + row0, l0 * l1, k.k0, side_x2 * row0);
-  float t1 = SideEdgeRatio(y0 * y + column, l1 * lc, k.k1, side_y2 * column);
-  float t2 = SideEdgeRatio(x * x4 + row, lc * l3, k.k2, side_x2 * row);
-  float t3 = SideEdgeRatio(y * y4 + column4, l3 * l4, k.k3, side_y2 * column4);
+  float t0 = LambertEdgeRatio(x0 * x + row0, l0 * l1, k.k0, side_x2 * row0);
+  float t1 = LambertEdgeRatio(y0 * y + column, l1 * lc, k.k1, side_y2 * column);
+  float t2 = LambertEdgeRatio(x * x4 + row, lc * l3, k.k2, side_x2 * row);
+  float t3 = LambertEdgeRatio(y * y4 + column4, l3 * l4, k.k3, side_y2 * column4);
 
-  float c_a = CrossZ(c, a);
-  float c_b = CrossZ(c, b);
-  float a_b = CrossZ(a, b);
+  // n · (c × A), n · (c × B), n · (A × B).
+  float c_a = side_x * (n.y * z - n.z * y);
+  float c_b = side_y * (n.z * x - n.x * z);
+  float a_b = side_x * side_y * n.z;
   // v4 × v0 from the shares.
   float area = abs((k.k2 - k.k0) * c_a + (k.k3 - k.k1) * c_b + (k.k1 * k.k2 - k.k0 * k.k3) * a_b);
   float closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);

@@ -11,6 +11,3 @@ float LambertEdgeRatio(float d, float m, float share, float line2) {
   float y = abs(x);
   return MirrorOverSine(x, 1.5708 + (-0.879406 + 0.308609 * y) * y) / max(m, 1e-30) * share;
 }
-
-// Of a side of the light itself, never of one in the horizon.
-float SideEdgeRatio(float d, float m, float share, float line2) { return LambertEdgeRatio(d, m, share, line2); }

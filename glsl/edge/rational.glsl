@@ -3,6 +3,3 @@
 
 // Of the light itself, for the diffuse lobe.
 float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
-
-// Of a side of the light itself, never of one in the horizon.
-float SideEdgeRatio(float d, float m, float share, float line2) { return LambertEdgeRatio(d, m, share, line2); }

@@ -1,4 +1,6 @@
 // The form factor of a sphere clipped at the horizon, exactly [Snyder 1996; in the form of Lagarde & de Rousiers 2014]. Dual.
+#include "directions.glsl"
+
 // size: sin² of the sphere's angular radius, its form factor when faced, [0, 1]; elevation: cosine between its centre and
 // the normal.
 float ClippedSphere(float size, float elevation) {
@@ -9,5 +11,5 @@ float ClippedSphere(float size, float elevation) {
   float x = sqrt(max(1.0 / size - 1.0, 0.0));
   float rim = clamp(-x * y / sine, -1.0, 1.0);  // cosine of the azimuth where the sphere's rim meets the horizon
   float chord = sine * sqrt(1.0 - rim * rim);
-  return ((y * acos(rim) - x * chord) * size + atan(chord, x)) / kPi;
+  return ((y * Arccosine(rim) - x * chord) * size + Arctangent(chord, x)) / kPi;
 }

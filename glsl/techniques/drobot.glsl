@@ -141,7 +141,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     float cos_surface = max(dot(local.normal, to_point) * inverse_distance, 0.0);
     result.diffuse = surface.diffuse_albedo * min(cos_surface * solid_angle / kPi, 1.0);
 
-    vec3 to_part = vec3(part.center - foot, -point.z);
+    vec3 to_part = vec3(footprint.offset + part.shift, -point.z);
     inverse_distance = inversesqrt(dot(to_part, to_part));
     solid_angle = part.area * point.z * inverse_distance * inverse_distance * inverse_distance;
     result.specular = SpecularLobe(local, view, to_part * inverse_distance) * min(solid_angle, cone_solid_angle);

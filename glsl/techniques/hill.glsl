@@ -100,6 +100,12 @@ disk = "eigen"
 fit = "l3"
 frame = "normal"
 fresnel = "lobe"
+
+[ideal]
+sphere = "exact"
+edge = "acos"
+disk = "cone"
+norm = "none"
 ---*/
 #include "brdf.glsl"
 #include "ltc_tables.glsl"

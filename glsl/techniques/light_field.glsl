@@ -38,6 +38,10 @@ choices = [
 vector = "unit"
 clip = "stream"
 edge = "acos"
+
+[ideal]
+clip = "stream"
+edge = "acos"
 ---*/
 #include "ltc.glsl"
 #include "edge"

@@ -108,6 +108,12 @@ disk = "proxy"
 fit = "l3"
 frame = "normal"
 fresnel = "lobe"
+
+[ideal]
+clip = "stream"
+edge = "acos"
+disk = "exact"
+norm = "none"
 ---*/
 #include "brdf.glsl"
 #include "ltc_tables.glsl"

@@ -8,10 +8,8 @@ brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
 exact = ["point_limit"]
 ---*/
-#include "surface.glsl"
-#include "brdf.glsl"
 #include "lit.glsl"
-#include "brdf"
+#include "specular_lobe.glsl"
 
 // m²: below it no float position tells the centre from the point; there the direction is 0 and so is the radiance.
 const float kMinDistance2 = 1e-20;
@@ -30,16 +28,6 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   radiance.diffuse = surface.diffuse_albedo * irradiance / kPi;
 
-  vec3 halfway = normalize(to_light + to_view);
-  float n_dot_v = dot(surface.normal, to_view);
-  float n_dot_h = min(dot(surface.normal, halfway), 1.0);
-#if EFFECT_FRESNEL
-  vec3 fresnel = mix(surface.f0, vec3(1.0), SchlickWeight(dot(to_view, halfway)));
-#else
-  vec3 fresnel = surface.f0;
-#endif
-  float tan2_h = (1.0 - n_dot_h) * (1.0 + n_dot_h) / (n_dot_h * n_dot_h);
-  float brdf = GgxDensity(n_dot_h, surface.alpha) * BrdfOverGgx(n_dot_v, n_dot_l, dot(to_view, halfway), tan2_h, surface.alpha);
-  radiance.specular = fresnel * brdf * irradiance;
+  radiance.specular = SpecularBrdf(surface, to_view, to_light) * irradiance;
   return radiance;
 }

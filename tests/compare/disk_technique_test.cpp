@@ -13,7 +13,7 @@ constexpr std::array kShapes{LightShape::kDisk, LightShape::kSphere};
 
 class DiskTechnique : public testing::Test {
  protected:
-  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>("disk"); }
+  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>(); }
   static void TearDownTestSuite() { points_.reset(); }
   static std::unique_ptr<TechniquePoints> points_;
 };

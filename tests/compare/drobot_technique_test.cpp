@@ -17,7 +17,7 @@ namespace {
 
 class DrobotTechnique : public testing::Test {
  protected:
-  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>("drobot"); }
+  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>(); }
   static void TearDownTestSuite() { points_.reset(); }
   static std::unique_ptr<TechniquePoints> points_;
 };

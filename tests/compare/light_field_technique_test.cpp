@@ -11,7 +11,7 @@ namespace {
 
 class LightFieldTechnique : public testing::Test {
  protected:
-  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>("light_field"); }
+  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>(); }
   static void TearDownTestSuite() { points_.reset(); }
   static std::unique_ptr<TechniquePoints> points_;
 };

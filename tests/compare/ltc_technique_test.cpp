@@ -14,7 +14,7 @@ namespace {
 
 class LtcTechnique : public testing::Test {
  protected:
-  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>("ltc_points"); }
+  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>(); }
   static void TearDownTestSuite() { points_.reset(); }
 
   static std::vector<Shaded> Shade(const std::string& variant, const std::vector<PointCase>& cases,

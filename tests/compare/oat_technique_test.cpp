@@ -16,7 +16,7 @@ namespace {
 
 class OatTechnique : public testing::Test {
  protected:
-  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>("oat"); }
+  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>(); }
   static void TearDownTestSuite() { points_.reset(); }
   static std::unique_ptr<TechniquePoints> points_;
 };

@@ -10,7 +10,7 @@ namespace {
 
 class ReferenceTechnique : public testing::Test {
  protected:
-  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>("reference"); }
+  static void SetUpTestSuite() { points_ = std::make_unique<TechniquePoints>(); }
   static void TearDownTestSuite() { points_.reset(); }
   static std::unique_ptr<TechniquePoints> points_;
 };

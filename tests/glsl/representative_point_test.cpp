@@ -143,22 +143,24 @@ TEST(ImportanceCone, FootprintIsContinuousWhereItMissesThePlane) {
 
 TEST(ImportanceCone, PartsOfLights) {
   // Wholly inside, wholly covering, apart; square of equal area.
-  dual::LitPart part = dual::FootprintOnDisk({{0.2, 0.0}, 0.1}, 1.0);
+  dual::LitPart part = dual::FootprintOnDisk({{0.2, 0.0}, {0.0, 0.0}, 0.1}, 1.0);
   EXPECT_NEAR(part.area, kPi * 0.01, 1e-15);
-  EXPECT_NEAR(part.center.x, 0.2, 1e-15);
-  part = dual::FootprintOnDisk({{0.2, 0.0}, 10.0}, 1.0);
+  EXPECT_NEAR(part.shift.x, 0.0, 1e-15);
+  part = dual::FootprintOnDisk({{0.2, 0.0}, {0.0, 0.0}, 10.0}, 1.0);
   EXPECT_NEAR(part.area, kPi, 1e-15);
-  EXPECT_EQ(part.center.x, 0.0);
-  EXPECT_EQ(dual::FootprintOnDisk({{3.0, 0.0}, 1.0}, 1.0).area, 0.0);
-  part = dual::FootprintOnRectangle({{0.2, 0.1}, 0.1}, {1.0, 0.5});
+  EXPECT_EQ(part.shift.x, -0.2);
+  EXPECT_EQ(dual::FootprintOnDisk({{3.0, 0.0}, {0.0, 0.0}, 1.0}, 1.0).area, 0.0);
+  part = dual::FootprintOnRectangle({{0.2, 0.1}, {0.0, 0.0}, 0.1}, {1.0, 0.5});
   EXPECT_NEAR(part.area, kPi * 0.01, 1e-15);
-  EXPECT_NEAR(part.center.y, 0.1, 1e-15);
-  part = dual::FootprintOnRectangle({{0.9, 0.0}, 2.0 * 0.2 / std::sqrt(kPi)}, {1.0, 0.5});
+  EXPECT_EQ(part.shift.y, 0.0);
+  part = dual::FootprintOnRectangle({{0.9, 0.0}, {0.0, 0.0}, 2.0 * 0.2 / std::sqrt(kPi)}, {1.0, 0.5});
   EXPECT_NEAR(part.area, 0.3 * 0.4, 1e-15);
-  EXPECT_NEAR(part.center.x, 0.85, 1e-15);
-  part = dual::FootprintOnRectangle({{0.0, 0.0}, 1e6}, {1.0, 0.5});
+  EXPECT_NEAR(part.shift.x, -0.05, 1e-15);
+  part = dual::FootprintOnRectangle({{0.0, 0.0}, {0.0, 0.0}, 1e6}, {1.0, 0.5});
   EXPECT_EQ(part.area, 2.0);
-  EXPECT_EQ(dual::FootprintOnRectangle({{5.0, 0.0}, 1.0}, {1.0, 0.5}).area, 0.0);
+  part = dual::FootprintOnRectangle({{5.0, 0.0}, {0.0, 0.0}, 1.0}, {1.0, 0.5});
+  EXPECT_EQ(part.area, 0.0);
+  EXPECT_EQ(part.shift.x, -4.0);  // the light's nearest side
 }
 
 // The fit against quadrature over facets, at nodes other than its own.
