@@ -13,12 +13,14 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "compare/image_files.h"
 #include "compare/metrics.h"
 #include "compare/page_data.h"
+#include "compare/pareto.h"
 #include "compare/results_json.h"
 #include "scenes/embedded.h"
 #include "scenes/error.h"
@@ -29,6 +31,9 @@ namespace report_files {
 extern const EmbeddedFile kFiles[];
 extern const int kFileCount;
 }  // namespace report_files
+namespace plot_library {
+extern const EmbeddedFile kFiles[];
+}
 
 namespace {
 
@@ -300,6 +305,12 @@ double MapScale(const SceneResult& scene, const std::vector<glm::vec3>& truth, d
   return std::min(std::pow(10.0, exponent + 1.0), 1.0);
 }
 
+// Nothing where fewer than two variants have both figures.
+void WritePlot(const fs::path& file, std::span<const SceneResult> scenes, bool software) {
+  const ParetoPlot plot = MakeParetoPlot(scenes, software);
+  if (plot.marks.size() > 1) WriteText(file, ParetoSvg(plot));
+}
+
 std::string Substitute(std::string text, std::string_view mark, std::string_view value) {
   const std::size_t at = text.find(mark);
   if (at == std::string::npos)
@@ -418,10 +429,20 @@ void WriteReport(const Results& results, const fs::path& directory,
   done = 0;
   write(1, most_bits);
 
+  fs::create_directories(partial.path() / "plots");
+  for (std::size_t s = 0; s < results.scenes.size(); ++s) {
+    WritePlot(partial.path() / "plots" / (page["scenes"][s]["folder"].get<std::string>() + ".svg"),
+              std::span(results.scenes).subspan(s, 1), results.software);
+  }
+  // No scene's folder has a blank.
+  if (results.scenes.size() > 1) WritePlot(partial.path() / "plots" / "all scenes.svg", results.scenes, results.software);
+
   WriteText(partial.path() / "results.json", ResultsJson(results));
   WriteText(partial.path() / "results.csv", ResultsCsv(results));
   std::string html(ReportFile("index.html"));
   html = Substitute(std::move(html), "/*arealab:css*/", ReportFile("report.css"));
+  html = Substitute(std::move(html), "/*arealab:d3*/", plot_library::kFiles[0].bytes());
+  html = Substitute(std::move(html), "/*arealab:pareto*/", ReportFile("pareto.js"));
   html = Substitute(std::move(html), "/*arealab:js*/", ReportFile("report.js"));
   html = Substitute(std::move(html), "{\"arealab\": \"results\"}",
                     ScriptSafe(page.dump(-1, ' ', false, Json::error_handler_t::replace)));

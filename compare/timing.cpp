@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 #include <random>
 
 #include "scenes/error.h"
@@ -141,15 +142,16 @@ std::vector<Timing> MeasureTimes(const Context& context, Renderer& renderer, con
     const Estimate ratio = BootstrapMedian(ratios);
     return ratio.high - ratio.low <= 2.0 * options.target * ratio.value;
   };
+  std::vector<std::size_t> order(2 + variants.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937 random(1);
   double spent = 0.0;
   for (bool known = false; !known && static_cast<int>(rounds.size()) < options.max_rounds;) {
     const bool enough = static_cast<int>(rounds.size()) >= options.min_rounds;
     if (enough && spent >= options.seconds) break;
-    // Each round begins one draw later, so that none always follows the same one.
-    const std::size_t draws = 2 + variants.size(), first = rounds.size() % draws;
-    std::vector<double>& round = rounds.emplace_back(draws);
-    for (std::size_t i = 0; i < draws; ++i) {
-      const std::size_t draw = (first + i) % draws;
+    std::shuffle(order.begin(), order.end(), random);  // so that none always follows the same one
+    std::vector<double>& round = rounds.emplace_back(order.size());
+    for (const std::size_t draw : order) {
       round[draw] = clock.Seconds([&] {
         if (draw == 0) renderer.DrawThrough();
         if (draw == 1) renderer.Draw(point);

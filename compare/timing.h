@@ -21,7 +21,7 @@ struct TimingOptions {
 
 // One Timing per variant, of the scene that `renderer` drew last. `point` is the variant that ratios refer to;
 // lit_pixels is what times are divided by. A round draws a pass that only reads the G-buffer and writes it through,
-// `point` and every variant, in an order that turns by one from round to round. The clock is process CPU time where a CPU draws, else a timer query.
+// `point` and every variant, in an order that a fixed seed shuffles. The clock is process CPU time where a CPU draws, else a timer query.
 // Throws InputError where the clock does not show a draw repeated twice as twice as long (within a factor of 1.25).
 std::vector<Timing> MeasureTimes(const Context& context, Renderer& renderer, const std::vector<Variant>& variants,
                                  const Variant& point, int lit_pixels, const TimingOptions& options = {});

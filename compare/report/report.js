@@ -246,7 +246,8 @@ function paintMap(canvas, kind, a, b, lobe, floor, range, log) {
 // ---------------------------------------------------------------- state, kept in the address
 
 const state = { scene: "", a: "", b: TRUTH, lobe: "total", map: "signed", log: true, range: 0, ev: 0, wipe: 0.5,
-                zoom: 0, x: 0, y: 0, px: -1, py: -1, thumbs: "pictures", sort: "total", down: false };
+                zoom: 0, x: 0, y: 0, px: -1, py: -1, thumbs: "pictures", sort: "total", down: false,
+                cost: "", metric: "rel_rmse", xlog: true, ylog: true, off: "" };
 const DEFAULTS = { ...state };
 let scene = null;
 let images = new Map();  // variant name, TRUTH or "emission" → decoded image of the current scene
@@ -263,6 +264,7 @@ function readHash() {
   if (!LOBES.includes(state.lobe)) state.lobe = "total";
   if (!["signed", "magnitude"].includes(state.map)) state.map = "signed";
   if (!["pictures", "signed", "magnitude"].includes(state.thumbs)) state.thumbs = "pictures";
+  if (!ERRORS.some(([key]) => key === state.metric)) state.metric = "rel_rmse";
   state.wipe = clamp(state.wipe, 0, 1);
   state.zoom = clamp(state.zoom, 0, 64);
   state.range = state.range > 0 ? state.range : 0;
@@ -460,9 +462,10 @@ function buildScene() {
   section.append(buildThumbs(s), buildTable(s));
   delete ui.shadow;
   if (s.truth.shadow) section.append(buildShadow(s));
-  const pairs = buildPairs(s), plot = buildPlot(s);
-  const crowded = variantsOf(s).length > 13;
-  section.append(pairs && plot && !crowded ? h("div", { class: "two" }, pairs, plot) : h("div", {}, pairs, plot));
+  const pairs = buildPairs(s);
+  ui.plot = buildPareto([s], "Accuracy against cost", "on this scene");
+  if (ui.plot) section.append(ui.plot);
+  if (pairs) section.append(pairs);
   const refused = s.variants.filter((v) => !v.supported);
   if (refused.length) {
     section.append(h("section", {}, h("div", { class: "head" }, h("h3", { text: "Not supported here" })),
@@ -528,13 +531,28 @@ const COLUMNS = [
   ["p99", "p99", (v) => v.error.total.p99],
   ["max", "max", (v) => v.error.total.max],
   ["flip", "FLIP", (v) => v.error.total.flip],
-  ["nonfinite", "non-finite", (v) => v.nonfinite_pixels],
+  ["nonfinite", "NaN, ∞", (v) => v.nonfinite_pixels],
   ["time", "time × point", (v) => v.time.ratio_to_point],
 ];
+const withSpread = (value, interval) => known(value) && interval ? `${value.toFixed(value < 10 ? 2 : 1)} ± ${((interval[1] - interval[0]) / 2).toFixed(value < 10 ? 2 : 1)}` : "–";
+
+// What stands behind a figure of cost.
+function costHint(key, v) {
+  if (key === "time" && v.time.ratio_interval) {
+    return `95 % interval ${v.time.ratio_interval.map((x) => x.toFixed(2)).join(" to ")}, ${v.time.rounds} rounds` + (v.time.net_refusal ? `; no net ratio: ${v.time.net_refusal}` : "");
+  }
+  const isa = v.isa && v.isa[key];
+  if (!isa) return null;
+  const paths = Object.entries(isa.core.paths || {}).map(([path, cost]) => `light ${path} the horizon ${cost.cycles}`);
+  return [`technique alone: ${isa.core.instructions} instructions, ${isa.core.registers} registers, ${isa.core.spills} spills`, `whole pass: ${isa.full.cycles} cycles`,
+    ...(known(isa.core.estimated_ms_1080p) ? [`${isa.core.estimated_ms_1080p.toFixed(2)} ms at 1080p, estimated from ${key} ISA`] : []), ...paths].join("; ");
+}
 
 function buildTable(s) {
   const shown = variantsOf(s);
-  const columns = COLUMNS.filter(([key, , value]) => !["time", "flip"].includes(key) || shown.some((v) => known(value(v))));
+  const gpus = gpusOf([s]);
+  const columns = [...COLUMNS.filter(([key, , value]) => !["time", "flip"].includes(key) || shown.some((v) => known(value(v)))),
+    ...gpus.map((gpu) => [gpu, gpu, (v) => v.isa && v.isa[gpu] ? v.isa[gpu].core.cycles : null])];
   const head = h("tr"), body = h("tbody");
   for (const [key, title] of columns) {
     head.append(h("th", { scope: "col", "data-key": key }, h("button", { type: "button", text: title, onclick: () => set({ sort: key, down: state.sort === key ? !state.down : false }) })));
@@ -557,7 +575,10 @@ function buildTable(s) {
       const e = v.error, cells = {
         total: percent(e.total.rel_rmse), diffuse: percent(e.diffuse.rel_rmse), specular: percent(e.specular.rel_rmse),
         bias: signed(percent(e.total.bias)), relmse: figure(e.total.relmse), mae: figure(e.total.mae), p99: figure(e.total.p99),
-        flip: figure(e.total.flip), nonfinite: String(v.nonfinite_pixels), time: known(v.time.ratio_to_point) ? v.time.ratio_to_point.toFixed(2) : "–" };
+        flip: figure(e.total.flip), nonfinite: String(v.nonfinite_pixels),
+        time: [withSpread(v.time.ratio_to_point, v.time.ratio_interval),
+          known(v.time.net_ratio_to_point) ? h("span", { class: "sub" }, `net ${withSpread(v.time.net_ratio_to_point, v.time.net_ratio_interval)}`) : null] };
+      for (const gpu of gpus) cells[gpu] = v.isa && v.isa[gpu] ? String(v.isa[gpu].core.cycles) : "–";
       return h("tr", { class: v.within_truth_error ? "tied" : null }, columns.map(([key, title]) => {
         if (key === "name") {
           return h("td", {}, h("button", { type: "button", class: "link", text: v.short_name || v.name, onclick: () => { set({ a: v.name }); scrollToScene(); } }),
@@ -571,13 +592,13 @@ function buildTable(s) {
           return h("td", { "data-label": title }, h("span", {}, figure(e.total.max), " ", at ? h("button", { type: "button", class: "link at", text: `(${at[0]}, ${at[1]})`,
             title: "Show this pixel", onclick: () => { set({ a: v.name, b: scene.truth.stem ? TRUTH : state.b, px: at[0], py: at[1] }); zoomTo(8, at[0] + 0.5, at[1] + 0.5); scrollToScene(); } }) : ""));
         }
-        return h("td", { "data-label": title, class: key === "nonfinite" && v.nonfinite_pixels ? "bad" : null,
-          title: key === "time" && v.time.ratio_interval ? `95 % interval ${v.time.ratio_interval.map((x) => x.toFixed(2)).join(" to ")}, ${v.time.rounds} rounds` : null }, cells[key]);
+        return h("td", { "data-label": title, class: key === "nonfinite" && v.nonfinite_pixels ? "bad" : key === "time" ? "time" : null,
+          title: costHint(key, v) }, Array.isArray(cells[key]) ? h("span", {}, cells[key]) : cells[key]);
       }));
     }));
   };
   return h("section", {}, h("div", { class: "head" }, h("h3", { text: "Figures against truth" }), h("label", { class: "group sortby" }, h("span", { class: "label", text: "sort by" }), select),
-    h("p", { class: "note", text: `Total, diffuse and specular are relative RMSE; MAE, p99 and max are in ${s.unit || "the scene's unit"}. Choose a heading to sort, a pixel to go there.` })),
+    h("p", { class: "note", text: `Total, diffuse and specular are relative RMSE; MAE, p99 and max are in ${s.unit || "the scene's unit"}.${gpus.length ? ` ${gpus.join(", ")}: cycles per wave of 64, of the technique alone, estimated by the GPU's compiler; nothing was run.` : ""} Choose a heading to sort, a pixel to go there.` })),
     h("div", { class: "card" }, h("table", { class: "metrics" }, h("thead", {}, head), body)));
 }
 
@@ -611,54 +632,137 @@ function buildPairs(s) {
     h("p", { class: "note", text: "Relative RMSE of the row with the column as reference, %. A cell opens the pair." })), h("div", { class: "card" }, matrix));
 }
 
-// Error against time, both by decades; the line joins those that nothing beats in both.
-function buildPlot(s) {
-  // What is within truth's error is drawn at it: nobody knows how much better it is.
-  const limit = s.truth.relative_error;
-  const points = variantsOf(s).map((v) => ({ v, x: v.time.ratio_to_point, y: v.within_truth_error && known(limit) ? limit : v.error.total.rel_rmse }))
-    .filter((p) => known(p.x) && known(p.y) && p.x > 0 && p.y > 0);
-  if (points.length < 2) return null;
-  const W = 560, H = 380, left = 78, right = 18, top = 16, bottom = 48;
-  const lo = (list) => Math.min(...list), hi = (list) => Math.max(...list);
-  const xs = points.map((p) => Math.log10(p.x)), ys = points.map((p) => Math.log10(p.y));
-  const x0 = lo(xs) - 0.08, x1 = hi(xs) + 0.3, y0 = Math.floor(lo(ys) - 0.1), y1 = Math.ceil(hi(ys) + 0.1);
-  const X = (v) => left + (Math.log10(v) - x0) / (x1 - x0) * (W - left - right), Y = (v) => H - bottom - (Math.log10(v) - y0) / (y1 - y0) * (H - top - bottom);
-  const svg = h("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": "Error against time" });
-  for (let e = y0; e <= y1; ++e) {
-    svg.append(h("line", { class: "grid", x1: left, x2: W - right, y1: Y(10 ** e), y2: Y(10 ** e) }),
-      h("text", { x: left - 8, y: Y(10 ** e) + 4, "text-anchor": "end", text: `${Number((100 * 10 ** e).toPrecision(1))} %` }));
-  }
-  for (const t of [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]) {
-    if (Math.log10(t) < x0 || Math.log10(t) > x1) continue;
-    svg.append(h("line", { class: "grid", x1: X(t), x2: X(t), y1: top, y2: H - bottom }), h("text", { x: X(t), y: H - bottom + 18, "text-anchor": "middle", text: `${t}×` }));
-  }
-  svg.append(h("text", { x: (left + W - right) / 2, y: H - 8, "text-anchor": "middle", text: "time of the lighting pass relative to point" }));
-  if (known(limit) && Math.log10(limit) >= y0 && Math.log10(limit) <= y1) {
-    svg.append(h("line", { class: "limit", x1: left, x2: W - right, y1: Y(limit), y2: Y(limit) }), h("text", { x: left + 6, y: Y(limit) + 15, text: "truth's own error" }));
-  }
-  const order = [...points].sort((p, q) => p.x - q.x || p.y - q.y);
-  const front = order.filter((p, i) => order.slice(0, i).every((q) => q.y > p.y));
-  svg.append(h("path", { class: "front", d: front.map((p, i) => `${i ? "H" + X(p.x) + "V" + Y(p.y) : `M${X(p.x)} ${Y(p.y)}`}`).join("") }));
-  // Labels go to the right of their dot, or where the first free place is.
-  const taken = points.map((p) => [X(p.x) - 7, Y(p.y) - 7, 14, 14]);
-  front.slice(1).forEach((p, i) => {
-    const q = front[i];
-    taken.push([X(q.x), Y(q.y) - 1, X(p.x) - X(q.x), 2], [X(p.x) - 1, Y(q.y), 2, Y(p.y) - Y(q.y)]);
-  });
-  for (const p of order) {
-    const text = p.v.short_name || p.v.name, w = 7.6 * text.length, cx = X(p.x), cy = Y(p.y);
-    const places = [[cx + 9, cy - 7], [cx - 9 - w, cy - 7], [cx - w / 2, cy - 23], [cx - w / 2, cy + 9], [cx + 9, cy - 21], [cx + 9, cy + 7], [cx - 9 - w, cy - 21], [cx - 9 - w, cy + 7]];
-    const free = ([x, y]) => x > left && x + w < W && y > 0 && y + 14 < H - bottom + 4 && taken.every((t) => x + w < t[0] || t[0] + t[2] < x || y + 14 < t[1] || t[1] + t[3] < y);
-    const place = places.find(free);
-    const open = () => { set({ a: p.v.name }); scrollToScene(); };
-    svg.append(h("circle", { class: "dot", cx, cy, r: 5.5, onclick: open }, h("title", { text: `${text}: ${percent(p.y)} %, ${p.x.toFixed(2)}×` })));
-    if (place) {
-      taken.push([place[0], place[1], w, 14]);
-      svg.append(h("text", { class: front.includes(p) ? "named" : null, x: place[0], y: place[1] + 11, text }));
+// ---------------------------------------------------------------- accuracy against cost
+
+const ERRORS = [["rel_rmse", "relative RMSE"], ["bias", "bias, without its sign"], ["relmse", "relMSE"], ["mae", "MAE"], ["p99", "p99"], ["max", "max"], ["flip", "FLIP"]];
+const inPercent = (metric) => metric === "rel_rmse" || metric === "bias";
+const techniqueOf = (name) => name.split(/[+@]/)[0];
+const gpusOf = (scenes) => [...new Set(scenes.flatMap((s) => s.variants.flatMap((v) => Object.keys(v.isa || {}))))];
+
+// What a variant's cost can be read as, where some scene has it: value and interval of a variant, how to write it.
+function costAxes(scenes) {
+  const here = results.software ? ", measured here on a CPU rasteriser, not a GPU" : ", measured here";
+  const times = (x) => `${x < 9.95 ? x.toFixed(2) : x.toFixed(1)} × a point light`;
+  const axes = [
+    { key: "time", title: `time of the lighting pass over point's${here}`, short: "time × point", value: (v) => v.time.ratio_to_point, interval: (v) => v.time.ratio_interval, say: times },
+    { key: "net", title: `time over point's, both less reading and writing the G-buffer${here}`, short: "net time × point", value: (v) => v.time.net_ratio_to_point, interval: (v) => v.time.net_ratio_interval, say: times },
+  ];
+  for (const gpu of gpusOf(scenes)) {
+    for (const [part, name] of [["core", "the technique alone"], ["full", "the whole pass"]]) {
+      axes.push({ key: part === "core" ? gpu : `${gpu}.${part}`, title: `cycles per wave on ${gpu}, ${name}: estimated by its compiler`, short: `cycles on ${gpu}, ${part === "core" ? "technique" : "pass"}`,
+        value: (v) => v.isa && v.isa[gpu] ? v.isa[gpu][part].cycles : null, interval: () => null, say: (x) => `${Math.round(x)} cycles on ${gpu}` });
     }
   }
-  return h("section", { class: "plot" }, h("div", { class: "head" }, h("h3", { text: "Accuracy against cost" }),
-    h("p", { class: "note", text: `Relative RMSE over time; down and to the left is better, the line joins what nothing beats in both.${results.software ? " Times are a CPU rasteriser's, not a GPU's." : ""}` })), h("div", { class: "card" }, svg));
+  return axes.filter((axis) => scenes.some((s) => variantsOf(s).filter((v) => known(axis.value(v))).length > 1));
+}
+
+// A variant's place in one scene. What is within truth's error stands at it: nobody knows how much better it is.
+function placeIn(s, name, axis) {
+  const v = variantNamed(s, name);
+  if (!v || !v.stem) return null;
+  const limit = s.truth.relative_error, total = state.metric === "rel_rmse" && state.lobe === "total";
+  const tied = total && v.within_truth_error && known(limit);
+  const error = v.error[state.lobe][state.metric], x = axis.value(v), y = tied ? limit : known(error) ? Math.abs(error) : NaN;
+  if (!known(x) || !known(y) || !(x > 0) || !(y > 0)) return null;
+  return { x, y, xBar: axis.interval(v), yBar: state.metric === "rel_rmse" && known(limit) ? [Math.max(y - limit, 0), y + limit] : null, tied, variant: v };
+}
+
+// The marks of some scenes: of several, geometric means over those that every mark has; who shades fewer than half is left out.
+function paretoMarks(scenes, axis) {
+  const hidden = new Set(state.off.split(",")), names = [];
+  for (const s of scenes) for (const v of variantsOf(s)) if (!names.includes(v.name) && !hidden.has(techniqueOf(v.name))) names.push(v.name);
+  const count = (name) => scenes.filter((s) => placeIn(s, name, axis)).length;
+  const kept = names.filter((name) => 2 * count(name) >= scenes.length && count(name) > 0);
+  const common = scenes.filter((s) => kept.every((name) => placeIn(s, name, axis)));
+  const mean = (values) => Math.exp(values.reduce((sum, v) => sum + Math.log(v), 0) / values.length);
+  const marks = common.length === 0 ? [] : kept.map((name) => {
+    const places = common.map((s) => placeIn(s, name, axis)), v = places[0].variant, bars = places.map((p) => p.xBar).filter(Boolean);
+    const mark = { id: name, label: v.short_name || name, x: mean(places.map((p) => p.x)), y: mean(places.map((p) => p.y)), hollow: /@published$/.test(v.short_name || ""),
+      xBar: bars.length === places.length ? [mean(bars.map((b) => b[0])), mean(bars.map((b) => b[1]))] : null, yBar: places.length === 1 ? places[0].yBar : null };
+    const spread = mark.xBar ? ` (95 % interval ${mark.xBar.map((x) => figure(x)).join(" to ")})` : "";
+    mark.text = `${mark.label}: ${errorText(mark.y)} ${ERRORS.find(([key]) => key === state.metric)[1]}${places.some((p) => p.tied) ? " or less, within truth's own error" : ""}, ${axis.say(mark.x)}${spread}`;
+    return mark;
+  });
+  return { marks, common, left: names.filter((name) => !kept.includes(name)) };
+}
+const errorText = (y) => inPercent(state.metric) ? percent(y) + " %" : figure(y);
+
+// The frontier in words: who is the cheapest within a bound, and what the next step buys.
+function paretoSentences(front, axis, where) {
+  if (!front.length) return [];
+  const name = (m) => h("b", { text: m.label }), point = front.find((m) => techniqueOf(m.id) === "point"), list = [];
+  const cost = (m) => axis.say(m.x) + (m.xBar ? ` (${m.xBar.map((x) => x.toFixed(2)).join(" to ")})` : "") + (point && m !== point && !axis.key.match(/^(time|net)$/) ? `, ${(m.x / point.x).toFixed(1)} × a point light` : "");
+  if (inPercent(state.metric)) {
+    const bounds = [0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 0.005, 0.001], tightest = new Map();
+    for (const bound of bounds) {
+      const first = front.find((m) => m.y <= bound);
+      if (first) tightest.set(first, bound);
+    }
+    for (const [m, bound] of tightest) list.push(h("li", {}, `Within ${Number((100 * bound).toPrecision(2))} % of truth ${where}: `, name(m), `, ${cost(m)}.`));
+  }
+  front.slice(1).forEach((m, i) => {
+    const p = front[i], more = m.x / p.x;
+    list.push(h("li", {}, "From ", name(p), " to ", name(m), `: ${more < 9.95 ? more.toFixed(2) : more.toFixed(0)} × the cost leaves ${percent(m.y / p.y)} % of the error.`));
+  });
+  return list;
+}
+
+function buildPareto(scenes, title, where) {
+  const axes = costAxes(scenes);
+  if (!axes.length) return null;
+  const host = h("div", { class: "chart" }), said = h("p", { class: "hovered", role: "status" }), words = h("ul", { class: "words" }), aside = h("p", { class: "note" });
+  const cost = h("select", { "aria-label": "Cost", onchange: (e) => set({ cost: e.target.value }) }, axes.map((axis) => h("option", { value: axis.key, text: axis.short })));
+  const metric = h("select", { "aria-label": "Error", onchange: (e) => set({ metric: e.target.value }) },
+    ERRORS.filter(([key]) => scenes.some((s) => variantsOf(s).some((v) => known(v.error.total[key])))).map(([key, name]) => h("option", { value: key, text: name })));
+  const lobe = segments("Lobe of the plot", LOBES.map((l) => [l, l]), state.lobe, (l) => set({ lobe: l }));
+  const scale = (axis, key) => segments(`Scale of the ${axis} axis`, [["1", "log"], ["0", "linear"]], state[key] ? "1" : "0", (v) => set({ [key]: v === "1" }));
+  const xLog = scale("cost", "xlog"), yLog = scale("error", "ylog");
+  const techniques = [...new Set(scenes.flatMap((s) => variantsOf(s).map((v) => techniqueOf(v.name))))];
+  const chips = techniques.map((t) => h("button", { type: "button", class: "chip-toggle", "data-technique": t, text: t, onclick: () => {
+    const off = new Set(state.off.split(",").filter(Boolean));
+    if (!off.delete(t)) off.add(t);
+    set({ off: [...off].sort().join(",") });
+  } }));
+  const section = h("section", { class: "plot" },
+    h("div", { class: "head" }, h("h3", { text: title }), h("p", { class: "note", text: "Down and to the left is better. The line joins what nothing beats in both; the rest is grey. Hollow: the form its author published, tied to ours. Bars: 95 % of the measured time, truth's own error. Choose a mark to see its picture." })),
+    h("div", { class: "toolbar" }, h("div", { class: "group" }, h("span", { class: "label", text: "cost" }), cost, xLog), h("div", { class: "group" }, h("span", { class: "label", text: "error" }), metric, yLog, lobe),
+      h("div", { class: "group" }, h("span", { class: "label", text: "show" }), chips)),
+    h("div", { class: "card" }, host, said, words, aside));
+  section.refresh = () => {
+    const axis = axes.find((a) => a.key === state.cost) || axes[0];
+    cost.value = axis.key;
+    metric.value = state.metric;
+    press(lobe, state.lobe);
+    press(xLog, state.xlog ? "1" : "0");
+    press(yLog, state.ylog ? "1" : "0");
+    const hidden = new Set(state.off.split(","));
+    for (const chip of chips) chip.setAttribute("aria-pressed", String(!hidden.has(chip.dataset.technique)));
+    const { marks, common, left } = paretoMarks(scenes, axis);
+    const rest = "Point at a mark to read it.";
+    if (marks.length < 2) {
+      host.replaceChildren(h("p", { class: "note", text: "Fewer than two variants have both figures here." }));
+      words.replaceChildren();
+      said.textContent = "";
+    } else {
+      const families = new Map();
+      for (const m of marks) if (techniqueOf(m.id) === "monte_carlo") families.set("monte_carlo", [...(families.get("monte_carlo") || []), m.id]);
+      const limit = scenes.length === 1 && state.metric === "rel_rmse" && state.lobe === "total" && marks.some((m) => m.y <= scenes[0].truth.relative_error) ? scenes[0].truth.relative_error : null;
+      const front = window.arealabPareto.draw(host, {
+        name: title, marks, links: marks.filter((m) => m.hollow).map((m) => [m.id, techniqueOf(m.id)]), chains: [...families.values()].filter((c) => c.length > 1),
+        x: { title: `${axis.short}${state.xlog ? ", logarithmic" : ""}`, log: state.xlog, format: (x) => /^(time|net)$/.test(axis.key) ? `${Number(x.toPrecision(2))}×` : Number(x.toPrecision(3)).toLocaleString("en") },
+        y: { title: `${ERRORS.find(([key]) => key === state.metric)[1]}, ${state.lobe}`, log: state.ylog, format: (y) => inPercent(state.metric) ? `${Number((100 * y).toPrecision(2))} %` : figure(y, 2) },
+        limit: limit ? { y: limit, text: "truth's own error" } : null,
+        onpick: (id) => { const s = common.includes(scene) ? null : common[0]; if (s) location.hash = sceneLink(s.name, { a: id }); else set({ a: id }); scrollToScene(); },
+        onhover: (m) => { said.textContent = m ? m.text : rest; },
+      });
+      said.textContent = rest;
+      words.replaceChildren(...paretoSentences(front, axis, where));
+    }
+    aside.textContent = `Cost: ${axis.title}.` + (scenes.length > 1 && common.length ? ` Geometric means over the ${common.length} scenes that all of these shade: ${common.map((s) => s.name).join(", ")}.` : "") +
+      (left.length ? ` Left out, with figures in fewer than half of the scenes: ${left.map((n) => label(scenes.find((s) => variantNamed(s, n)), n)).join(", ")}.` : "") +
+      (axis.key === "time" && results.scenes.some((s) => s.variants.some((v) => v.time.net_refusal)) ? " Net times are refused in some scenes: point's own is lost in its spread." : "") + (results.no_isa ? ` No cycles: ${results.no_isa}.` : "");
+  };
+  return section;
 }
 
 // ---------------------------------------------------------------- the two views
@@ -983,7 +1087,13 @@ function set(changes) {
   draw();
   if (before.sort !== state.sort || before.down !== state.down) ui.table();
   if (before.lobe !== state.lobe) overview.refresh();
+  if (["lobe", "cost", "metric", "xlog", "ylog", "off"].some((key) => before[key] !== state[key])) drawPlots();
   if ((before.a !== state.a || before.b !== state.b) && ui.pairMatrix) ui.pairMatrix();
+}
+
+function drawPlots() {
+  if (ui.plot) ui.plot.refresh();
+  if (overallPlot) overallPlot.refresh();
 }
 
 // Loads the scene's images, those on the stage first.
@@ -1017,6 +1127,8 @@ async function loadScene(mine) {
 let shown = null;
 const recent = [];
 const overview = buildOverview();
+const overallPlot = results.scenes.length > 1 ? buildPareto(results.scenes, "Accuracy against cost over the scenes", "over these scenes") : null;
+if (overallPlot) overview.append(overallPlot);
 function show() {
   readHash();
   settle();
@@ -1047,6 +1159,7 @@ function show() {
   }
   ui.table();
   if (ui.pairMatrix) ui.pairMatrix();
+  drawPlots();
   drawNow();
 }
 
@@ -1059,7 +1172,9 @@ const TERMS = [
   ["MAE, p99, max", "Mean absolute difference; the largest channel's difference that 99 % of the pixels stay below; and the largest of all, with its pixel."],
   ["FLIP", "HDR-FLIP at 67 pixels per degree: 0 where a viewer who flips between two pictures sees nothing, 1 for the strongest difference; mean over the picture."],
   ["Truth's own error", "Ground truth is integrated too, and estimates its own relative error. A variant whose error is below four times that is within truth's error: its place in the ranking would be chance, so it has none."],
-  ["Time", "Time of the lighting pass alone as a ratio to the point variant, measured in the same interleaved run."],
+  ["Time", "Time of the lighting pass alone as a ratio to the point variant, in interleaved rounds, with half the width of its 95 % interval. Net: both less a pass that only reads the G-buffer and writes it through; refused where point's net time is within three times its spread."],
+  ["Cycles", "Of a wave of 64 pixels on one SIMD of a GPU that is not here, as Mesa's compiler for it counts them: estimated from the instructions, nothing was run. Memory and divergence are not in them. The technique alone has its inputs as varyings and uniforms; the whole pass reads the G-buffer. Both are of a lit pixel."],
+  ["Accuracy against cost", "The frontier joins the variants that no other beats in both error and cost. Over several scenes a mark is the geometric mean over the scenes that every variant shown can shade."],
   ["Published and default", "name@published is the form its author published; the plain name is the best form we know. Both are shown, so that nobody is judged by our changes or robbed of theirs."],
   ["Emitters", "Lights seen directly are added to the pictures and are part of no metric and no map. Techniques cast no shadows, and neither does the truth they are ranked against."],
   ["Truth, shadowed", "What the lights do past the scene's surfaces, by rays: the unshadowed integrals times the visible share. Lights hide nothing themselves. It stands beside truth as a picture like any other, in no ranking; the missing shadow is its own map."],
@@ -1081,7 +1196,7 @@ function buildFooter() {
     h("p", { style: { "margin-top": "1rem" } }, "Figures for programs: ", h("a", { href: "results.json", text: "results.json" }), ", ", h("a", { href: "results.csv", text: "results.csv" }), "."));
 }
 
-const resizes = new ResizeObserver(() => { if (scene && shown) { overview.refresh(); if (ui.pairMatrix) ui.pairMatrix(); draw(); } });
+const resizes = new ResizeObserver(() => { if (scene && shown) { overview.refresh(); if (ui.pairMatrix) ui.pairMatrix(); drawPlots(); draw(); } });
 buildMasthead();
 $("#main").append(overview, buildGlossary());
 buildFooter();

@@ -329,6 +329,119 @@ class Page(unittest.TestCase):
                     self.settle()
                     self.assertEqual(self.js(probe), [], msg=f"at {width} pixels")
 
+    def marks(self, plot):
+        """id -> (x, y, on the frontier) of each mark, in the plot's own units."""
+        return {m[0]: m[1:] for m in self.js("""
+            return [...arguments[0].querySelectorAll('.mark')].map((m) => { const c = m.querySelector('circle');
+              return [m.dataset.id, Number(c.getAttribute('cx')), Number(c.getAttribute('cy')), m.classList.contains('best')]; })""", plot)}
+
+    @staticmethod
+    def place(scene, variant, cost):
+        tied = variant["within_truth_error"]
+        return cost(variant), scene["truth"]["relative_error"] if tied else variant["error"]["total"]["rel_rmse"]
+
+    @staticmethod
+    def frontier(places):
+        return {n for n, (x, y) in places.items() if not any((q[0] <= x and q[1] <= y and q != (x, y)) for q in places.values())}
+
+    def test_accuracy_against_cost_is_a_picture(self):
+        self.open("#a=ltc&b=truth")
+        plot = self.driver.find_element(By.CSS_SELECTOR, "#scene section.plot")
+        scene = self.results["scenes"][0]
+        axes = {"time": lambda v: v["time"]["ratio_to_point"], "net": lambda v: v["time"]["net_ratio_to_point"],
+                "bonaire": lambda v: v["isa"]["bonaire"]["core"]["cycles"], "navi21.full": lambda v: v["isa"]["navi21"]["full"]["cycles"]}
+        for cost, value in axes.items():
+            self.set(cost=cost)
+            known = [v for v in scene["variants"] if v["supported"] and (v["isa"] or cost in ("time", "net"))]
+            places = {v["name"]: self.place(scene, v, value) for v in known}
+            marks = self.marks(plot)
+            self.assertEqual(set(marks), set(places))
+            best = self.frontier(places)
+            self.assertEqual({n for n, m in marks.items() if m[2]}, best)
+            self.assertGreater(len(best), 2)
+            self.assertLess(len(best), len(places))
+            for a in places:  # logarithmic axes: equal factors are equal ways
+                for b in places:
+                    if abs(math.log(places[a][0] / places[b][0])) > 0.2:
+                        self.assertAlmostEqual((marks[a][0] - marks[b][0]) / math.log(places[a][0] / places[b][0]),
+                                               (marks["ltc"][0] - marks["point"][0]) / math.log(places["ltc"][0] / places["point"][0]), delta=0.5)
+            names = self.js("return [...arguments[0].querySelectorAll('.name')].map((t) => [t.dataset.name, t.textContent, t.getBBox().x, t.getBBox().y, t.getBBox().width, t.getBBox().height])", plot)
+            self.assertEqual({n[0] for n in names}, set(places), msg="every mark has its name")
+            for i, p in enumerate(names):
+                for q in names[:i]:
+                    apart = p[2] + p[4] <= q[2] or q[2] + q[4] <= p[2] or p[3] + p[5] <= q[3] + 2 or q[3] + q[5] <= p[3] + 2
+                    self.assertTrue(apart, msg=f"{p} over {q}")
+            cheapest = min((x, n) for n, (x, y) in places.items() if y <= 0.05)[1]
+            words = self.text("#scene .plot .words")
+            if cost == "time":
+                short = next(v["short_name"] for v in known if v["name"] == cheapest)
+                self.assertRegex(words, rf"Within \d+(\.\d+)? % of truth on this scene: {short}, {places[cheapest][0]:.2f} × a point light")
+            elif cost == "bonaire":
+                self.assertRegex(words, r"\d+ cycles on bonaire, \d+\.\d × a point light")
+            self.assertIn("not a GPU" if cost in ("time", "net") else "estimated", self.text("#scene .plot .card .note"))
+        self.assertEqual(self.js("return arguments[0].querySelectorAll('.link-line').length", plot), 3)  # published forms tied to ours
+
+    def test_the_plot_answers(self):
+        self.open("#a=ltc&b=truth")
+        plot = self.driver.find_element(By.CSS_SELECTOR, "#scene section.plot")
+        self.js("arguments[0].querySelector('.chart').scrollIntoView({block: 'center'})", plot)
+        mark = plot.find_element(By.CSS_SELECTOR, ".mark[data-id=oat] circle")
+        ActionChains(self.driver, duration=0).move_to_element(mark).perform()
+        oat = next(v for v in self.results["scenes"][0]["variants"] if v["name"] == "oat")
+        hovered = plot.find_element(By.CSS_SELECTOR, ".hovered").text
+        self.assertIn("oat:", hovered)
+        self.assertIn(f"{oat['time']['ratio_to_point']:.2f} × a point light", hovered)
+        self.assertIn("95 % interval", hovered)
+        ActionChains(self.driver, duration=0).click(mark).perform()
+        self.settle()
+        self.assertEqual(self.js("return window.arealab.state.a"), "oat")
+        before = self.marks(plot)
+        self.js("arguments[0].querySelector('.chip-toggle[data-technique=ltc]').click()", plot)
+        self.settle()
+        self.assertEqual(set(before) - set(self.marks(plot)), {"ltc", "ltc+clip=switch+edge=rational"})
+        WebDriverWait(self.driver, 5, 0.02).until(lambda d: "off=ltc" in d.current_url)
+        self.js("arguments[0].querySelector('.chip-toggle[data-technique=ltc]').click()", plot)
+        self.set(xlog=False, metric="flip", lobe="total")
+        linear = self.marks(plot)
+        ratio = {v["name"]: v["time"]["ratio_to_point"] for v in self.results["scenes"][0]["variants"] if v["supported"]}
+        self.assertAlmostEqual((linear["ltc"][0] - linear["point"][0]) / (linear["reference"][0] - linear["point"][0]),
+                               (ratio["ltc"] - ratio["point"]) / (ratio["reference"] - ratio["point"]), delta=1e-3)
+        self.assertIn("FLIP", self.text("#scene .plot svg"))
+
+    def test_the_plot_over_all_scenes_takes_geometric_means(self):
+        self.open("#cost=bonaire&off=drobot")  # in one scene drobot has no figure, and only scenes that all have count
+        plot = self.driver.find_element(By.CSS_SELECTOR, "#overview section.plot")
+        note = plot.find_element(By.CSS_SELECTOR, ".card .note").text
+        scenes = [s for s in self.results["scenes"] if s["name"] in note]
+        self.assertGreater(len(scenes), 1)
+        cost = lambda v: v["isa"]["bonaire"]["core"]["cycles"]
+        places = {}
+        for name in self.marks(plot):
+            each = [self.place(s, next(v for v in s["variants"] if v["name"] == name), cost) for s in scenes]
+            places[name] = tuple(math.exp(sum(math.log(p[i]) for p in each) / len(each)) for i in (0, 1))
+        self.assertGreater(len(places), 4)
+        self.assertEqual({n for n, m in self.marks(plot).items() if m[2]}, self.frontier(places))
+        label = plot.find_element(By.CSS_SELECTOR, ".mark[data-id=point]").get_attribute("aria-label")
+        self.assertIn(f"{round(places['point'][0])} cycles on bonaire", label)
+
+    def test_a_family_is_a_curve(self):
+        self.open()
+        curve = self.js("""
+            const host = document.createElement('div');
+            document.querySelector('#main').append(host);
+            const mark = (id, x, y) => ({ id, label: id, x, y, xBar: [0.9 * x, 1.1 * x], yBar: null, text: id });
+            window.arealabPareto.draw(host, { marks: [mark('n16', 4, 0.2), mark('n1', 1, 0.8), mark('n64', 16, 0.1), mark('bad', 20, 0.9)], links: [], chains: [['n16', 'n1', 'n64']],
+              x: { title: 'x', log: true, format: String }, y: { title: 'y', log: true, format: String }, limit: null, name: 'test', onpick: () => {}, onhover: () => {} });
+            const at = (id) => { const c = host.querySelector(`[data-id=${id}] circle`); return [Number(c.getAttribute('cx')), Number(c.getAttribute('cy'))]; };
+            const found = [host.querySelector('.chain').getAttribute('d').match(/[\\d.]+/g).map(Number), [...at('n1'), ...at('n16'), ...at('n64')],
+              [...host.querySelectorAll('.mark.beaten')].map((m) => m.dataset.id), host.querySelectorAll('.bar').length];
+            host.remove();
+            return found;""")
+        for drawn, expected in zip(curve[0], curve[1]):
+            self.assertAlmostEqual(drawn, expected, delta=0.01)
+        self.assertEqual(len(curve[0]), 6)
+        self.assertEqual(curve[2:], [["bad"], 4])
+
     def test_maps_in_the_grid(self):
         self.open("#thumbs=signed")
         drawn = self.js("""return [...document.querySelectorAll('.thumb canvas')].map((c) => {

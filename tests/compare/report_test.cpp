@@ -426,7 +426,7 @@ TEST(Report, HostileNamesStayTextAndInsideTheFolder) {
     for (std::size_t at = page.find(what); at != std::string::npos; at = page.find(what, at + 1)) ++n;
     return n;
   };
-  EXPECT_EQ(count("</script>"), 2);
+  EXPECT_EQ(count("</script>"), 4);
   const std::size_t begin = page.find("id=\"results\">") + 13;
   const json data = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
   EXPECT_EQ(data["scenes"][1]["question"], Hostile().scenes[1].question);

@@ -248,6 +248,14 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
     variant.time.net_ns_per_pixel = around(8.0 * named.ratio - 5.0);
     variant.time.net_ratio_to_point = around((8.0 * named.ratio - 5.0) / 3.0);
     variant.time.rounds = 9;
+    const int cycles = static_cast<int>(100.0 * named.ratio) + 400;
+    for (const auto& [gpu, share] : {std::pair("bonaire", 1), std::pair("navi21", 2)}) {
+      if (variant.name == "reference") continue;
+      GpuCost& cost = variant.isa[gpu];
+      cost.core = {.instructions = cycles / 4, .cycles = cycles / share, .vgprs = 40, .sgprs = 48, .bytes = cycles};
+      cost.full = {.instructions = cycles / 4 + 20, .cycles = cycles / share + 30, .vgprs = 44, .sgprs = 48, .bytes = cycles};
+      if (variant.short_name == "ltc@published") cost.paths["below"] = {.instructions = 30, .cycles = 123};
+    }
     scene.variants.push_back(variant);
   }
   VariantResult refused;
@@ -280,6 +288,7 @@ inline Results MakeResults(const std::vector<SceneResult>& scenes) {
   results.platform = "OSMesa";
   results.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
   results.gl_version = "4.5 (Core Profile) Mesa 22.3.6";
+  results.compilers = "radv Mesa 22.3.6 by glslang 11:12.0.0";
   results.scenes = scenes;
   return results;
 }
