@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/progress.h"
+#include "compare/baseline.h"
 #include "compare/harness.h"
 #include "compare/report.h"
 #include "scenes/error.h"
@@ -21,6 +22,7 @@ struct CompareArguments {
   std::vector<std::string> limits;
   std::string out = "out";
   std::vector<std::string> gpus;
+  std::string baseline;
   double tolerance = 1e-4;
   bool all_variants = false;
   bool timing = false;
@@ -83,6 +85,15 @@ bool ExceedsLimits(const Results& results, const std::vector<Limit>& limits) {
   return exceeded;
 }
 
+// Prints what is worse than in the earlier run.
+bool IsWorse(const Results& results, const std::string& baseline) {
+  const BaselineReport report = CompareWithBaseline(results, baseline);
+  for (const std::string& note : report.notes) fmt::print("{}\n", note);
+  for (const std::string& line : report.worse) fmt::print(stderr, "{}\n", line);
+  fmt::print("{}: {} figures compared, {} worse\n", baseline, report.compared, report.worse.size());
+  return !report.worse.empty();
+}
+
 // Cycles where GPUs are asked for, or by default where the compilers are installed; else why there are none.
 std::string PrepareCost(const CompareArguments& arguments, CompareOptions& options) {
   if (arguments.gpus == std::vector<std::string>{"none"}) return "--gpu none";
@@ -135,7 +146,8 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   for (const SceneResult& scene : results.scenes) fmt::print("{}\n", SummaryTable(scene));
   if (!results.no_isa.empty()) fmt::print("without cycles: {}\n", results.no_isa);
   fmt::print("report: {}\n", (std::filesystem::absolute(arguments.out) / "index.html").lexically_normal().string());
-  return ExceedsLimits(results, limits) ? kExitLimitExceeded : 0;
+  const bool exceeded = ExceedsLimits(results, limits), worse = !arguments.baseline.empty() && IsWorse(results, arguments.baseline);
+  return exceeded || worse ? kExitLimitExceeded : 0;
 }
 
 }  // namespace
@@ -158,6 +170,9 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
                       "AMD families whose cycles are counted without them, or none (default: bonaire,navi21 where the "
                       "compilers are installed)")
       ->delimiter(',');
+  command->add_option("--baseline", arguments->baseline,
+                      "results.json of an earlier run: exit with status 1 where something is slower or less accurate beyond the noise")
+      ->check(CLI::ExistingFile);
   command->add_option("--tolerance", arguments->tolerance, "of the truth, relative, per pixel and light")
       ->capture_default_str()
       ->check(CLI::Range(1e-8, 1e-1));
