@@ -26,6 +26,7 @@ void AddView(CLI::App& app, int& /*status*/) {
   command->add_option("--frames", view.frames, "draws so many frames of the whole picture, then leaves (default: until closed)")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--screenshot", view.screenshot, "with --frames, written before leaving: .png as seen, .exr pane A's radiance");
+  command->add_option("--turntable", view.turntable, "folder for --frames pictures once round the camera's target (default 72 frames)");
   command->add_flag("--json", view.json, "prints times of this session at the end, milliseconds");
   arguments->common.AddContext(*command);
   arguments->common.AddGlsl(*command);
@@ -43,6 +44,7 @@ void AddView(CLI::App& app, int& /*status*/) {
       }
       if (options.frames == 0) options.frames = 1;
     }
+    if (!options.turntable.empty() && options.frames == 0) options.frames = 72;
     common.Library();  // refuses a folder that is not there
     options.shader_folder = common.glsl;
     if (!common.context.empty()) options.context = common.context == "egl" ? ContextKind::kEgl : ContextKind::kOsmesa;

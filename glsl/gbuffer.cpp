@@ -132,7 +132,7 @@ double DistanceToTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::d
 // the camera touches a surface this share of the scene's size must do.
 constexpr double kLeastNear = 1e-5;
 
-// One entry of gbuffer.frag's Draws, std430.
+// A Draw of gbuffer.frag, three texels of four floats.
 struct DrawEntry {
   glm::vec4 base_color_metalness;
   glm::vec2 roughness;
@@ -302,9 +302,12 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
                                     geometry.draws.empty() ? nullptr : geometry.draws.data());
   gl_.VertexArrayVertexBuffer(vertex_array_.id(), 0, vertices.id(), 0, sizeof(Vertex));
   gl_.VertexArrayElementBuffer(vertex_array_.id(), indices.id());
-  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, vertices.id());
-  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, indices.id());
-  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, draws.id());
+  const GlObject vertex_texels = MakeBufferTexture(gl_, GL_RGBA32F, vertices);
+  const GlObject index_texels = MakeBufferTexture(gl_, GL_R32UI, indices);
+  const GlObject draw_texels = MakeBufferTexture(gl_, GL_RGBA32F, draws);
+  gl_.BindTextureUnit(4, vertex_texels.id());
+  gl_.BindTextureUnit(5, index_texels.id());
+  gl_.BindTextureUnit(6, draw_texels.id());
   DrawCoverage(geometry, size);
   Resolve(geometry);
   gl_.UseProgram(0);  // a program in use would outlive its object

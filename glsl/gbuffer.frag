@@ -6,7 +6,8 @@ layout(location = 0) out vec4 out_position;    // m, world; w: what it is, see D
 layout(location = 1) out vec4 out_normal;      // unit shading normal; w: artist's roughness
 layout(location = 2) out vec4 out_base_color;  // linear sRGB; w: metalness
 
-struct Draw {                // std430, as gbuffer.cpp writes it
+// One draw, as gbuffer.cpp writes it.
+struct Draw {
   vec4 base_color_metalness;
   vec2 roughness;            // at texture coordinate u = 0 and 1
   float normal_scale;
@@ -14,10 +15,16 @@ struct Draw {                // std430, as gbuffer.cpp writes it
   ivec4 textures;            // x: the set of textures that it needs; y, z, w: whether that set has colour, roughness, normals
 };
 
-// 12 floats a vertex: position, normal, tangent (w: the bitangent's sign), texture coordinates.
-layout(std430, binding = 0) readonly buffer Vertices { float vertices[]; };
-layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };
-layout(std430, binding = 2) readonly buffer Draws { Draw draws[]; };
+struct Corner {
+  vec3 position, normal;
+  vec4 tangent;  // w: the bitangent's sign
+  vec2 uv;
+};
+
+// Buffers as textures: a software rasteriser reads these for several pixels at once, storage blocks a number at a time.
+layout(binding = 4) uniform samplerBuffer vertices;  // a Corner in three texels
+layout(binding = 5) uniform usamplerBuffer indices;
+layout(binding = 6) uniform samplerBuffer draws;     // a Draw in three texels
 
 layout(binding = 0) uniform usampler2D coverage;
 layout(binding = 1) uniform sampler2D base_color_texture;
@@ -30,8 +37,19 @@ uniform dvec3 ray_right;
 uniform dvec3 ray_up;
 uniform vec2 size;                 // pixels
 
-dvec3 Vec3At(uint i) { return dvec3(vertices[i], vertices[i + 1u], vertices[i + 2u]); }
-dvec2 Vec2At(uint i) { return dvec2(vertices[i], vertices[i + 1u]); }
+Draw DrawAt(uint i) {
+  int at = 3 * int(i);
+  vec4 ramp = texelFetch(draws, at + 1);
+  return Draw(texelFetch(draws, at), ramp.xy, ramp.z, ramp.w, floatBitsToInt(texelFetch(draws, at + 2)));
+}
+
+Corner CornerAt(uint i) {
+  int at = 3 * int(texelFetch(indices, int(i)).x);
+  vec4 a = texelFetch(vertices, at);
+  vec4 b = texelFetch(vertices, at + 1);
+  vec4 c = texelFetch(vertices, at + 2);
+  return Corner(a.xyz, vec3(a.w, b.xy), vec4(b.zw, c.xy), c.zw);
+}
 
 // A triangle: one corner and the edges to the two others.
 struct Triangle {
@@ -82,17 +100,17 @@ dvec2 NearestToRay(Triangle triangle, dvec3 ray) {
 void main() {
   uvec2 covering = texelFetch(coverage, ivec2(gl_FragCoord.xy), 0).xy;
   if (covering.x == 0u) discard;
-  Draw draw = draws[covering.y];
+  Draw draw = DrawAt(covering.y);
   if (draw.textures.x != texture_set) discard;
   uint first = 3u * (covering.x - 1u);
-  uint a = 12u * indices[first];
-  uint b = 12u * indices[first + 1u];
-  uint c = 12u * indices[first + 2u];
+  Corner a = CornerAt(first);
+  Corner b = CornerAt(first + 1u);
+  Corner c = CornerAt(first + 2u);
 
   Triangle triangle;
-  triangle.corner = Vec3At(a);
-  triangle.edge_b = Vec3At(b) - triangle.corner;
-  triangle.edge_c = Vec3At(c) - triangle.corner;
+  triangle.corner = a.position;
+  triangle.edge_b = dvec3(b.position) - triangle.corner;
+  triangle.edge_c = dvec3(c.position) - triangle.corner;
   dvec2 pixel = dvec2(gl_FragCoord.xy);
   dvec3 ray = RayThrough(pixel);
   dvec2 weight = RayHit(triangle, ray);
@@ -102,14 +120,14 @@ void main() {
   double weight_a = 1.0lf - weight.x - weight.y;
 
   dvec3 position = triangle.corner + weight.x * triangle.edge_b + weight.y * triangle.edge_c;
-  dvec3 normal_sum = weight_a * Vec3At(a + 3u) + weight.x * Vec3At(b + 3u) + weight.y * Vec3At(c + 3u);
+  dvec3 normal_sum = weight_a * a.normal + weight.x * b.normal + weight.y * c.normal;
   double normal_length = length(normal_sum);
   dvec3 normal = normal_length > 0.0lf ? normal_sum / normal_length
                                        : normalize(cross(triangle.edge_b, triangle.edge_c));
 
-  dvec2 uv_a = Vec2At(a + 10u);
-  dvec2 uv_b = Vec2At(b + 10u) - uv_a;
-  dvec2 uv_c = Vec2At(c + 10u) - uv_a;
+  dvec2 uv_a = a.uv;
+  dvec2 uv_b = b.uv - uv_a;
+  dvec2 uv_c = c.uv - uv_a;
   vec2 uv = vec2(uv_a + weight.x * uv_b + weight.y * uv_c);
 
   vec3 color = draw.base_color_metalness.rgb;
@@ -130,8 +148,8 @@ void main() {
     }
     if (draw.textures.w != 0) {
       vec3 texel = textureGrad(normal_texture, uv, uv_dx, uv_dy).xyz * 2.0 - 1.0;
-      dvec3 tangent = weight_a * Vec3At(a + 6u) + weight.x * Vec3At(b + 6u) + weight.y * Vec3At(c + 6u);
-      dvec3 bitangent = cross(normal, tangent) * vertices[a + 9u];
+      dvec3 tangent = weight_a * a.tangent.xyz + weight.x * b.tangent.xyz + weight.y * c.tangent.xyz;
+      dvec3 bitangent = cross(normal, tangent) * a.tangent.w;
       dvec3 mapped = double(texel.x * draw.normal_scale) * tangent +
                      double(texel.y * draw.normal_scale) * bitangent + double(texel.z) * normal;
       if (dot(mapped, mapped) > 0.0lf) normal = normalize(mapped);

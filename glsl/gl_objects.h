@@ -52,6 +52,15 @@ inline GlObject MakeBuffer(const GladGLContext& gl, std::size_t bytes, const voi
   return buffer;
 }
 
+// A view of the whole buffer, which it keeps alive, as a one-dimensional texture.
+inline GlObject MakeBufferTexture(const GladGLContext& gl, GLenum internal_format, const GlObject& buffer) {
+  GLuint id = 0;
+  gl.CreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+  GlObject texture(gl, id, [](const GladGLContext& table, GLuint name) { table.DeleteTextures(1, &name); });
+  gl.TextureBuffer(id, internal_format, buffer.id());
+  return texture;
+}
+
 inline GlObject MakeFramebuffer(const GladGLContext& gl) {
   GLuint id = 0;
   gl.CreateFramebuffers(1, &id);

@@ -372,6 +372,10 @@ void SaveScene(const Scene& before, const Scene& after) {
     throw InputError(fmt::format("{}: not saved, since {} would not read back as it is; expected the file as it was when it was opened",
                                  file.string(), *lost));
   }
+  WriteSceneText(file, text);
+}
+
+void WriteSceneText(const fs::path& file, const std::string& text) {
   const fs::path temporary = file.string() + fmt::format(".{}.tmp", getpid());
   {
     std::ofstream stream(temporary, std::ios::binary);

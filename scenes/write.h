@@ -1,6 +1,7 @@
 // Puts what was edited back into a scene file: comments, order and all that is not edited stay as they are.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "scenes/scene.h"
@@ -16,5 +17,8 @@ std::string EditedText(const std::string& text, const Scene& before, const Scene
 // The same for the file that `after.file` names, which is replaced in one step. Throws InputError where what it then
 // holds does not read as `after`, since someone else has edited it, or where it cannot be written.
 void SaveScene(const Scene& before, const Scene& after);
+
+// Replaces a file's bytes in one step. Throws InputError where it cannot be written.
+void WriteSceneText(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace arealab

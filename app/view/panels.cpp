@@ -39,7 +39,14 @@ const Technique* TechniqueOf(const ViewState& state, const std::string& variant)
 void VariantCombo(PanelContext& context, int pane, float width) {
   ShownVariant& shown = context.session.panes[static_cast<std::size_t>(pane)];
   ImGui::SetNextItemWidth(width);
-  if (ImGui::BeginCombo(fmt::format("##pane{}", pane).c_str(), shown.name.c_str(), ImGuiComboFlags_HeightLargest)) {
+  const Snapshot* snapshot = context.session.SnapshotOf(shown);
+  const std::string label = snapshot != nullptr ? snapshot->label : shown.name;
+  if (ImGui::BeginCombo(fmt::format("##pane{}", pane).c_str(), label.c_str(), ImGuiComboFlags_HeightLargest)) {
+    for (std::size_t i = 0; i < context.session.snapshots.size(); ++i) {
+      const std::string name = fmt::format("#{}", i + 1);
+      if (ImGui::Selectable(context.session.snapshots[i].label.c_str(), name == shown.name)) shown = {name, {}};
+      Tip("A picture kept earlier (K).");
+    }
     if (context.state.techniques) {
       for (const Variant& variant : DefaultVariants(*context.state.techniques)) {
         const std::string name = variant.ShortName();
@@ -67,6 +74,11 @@ std::string Shortened(std::string text, float width) {
 void VariantControls(PanelContext& context, int pane) {
   ShownVariant& shown = context.session.panes[static_cast<std::size_t>(pane)];
   const Technique* technique = TechniqueOf(context.state, shown.name);
+  if (const Snapshot* snapshot = context.session.SnapshotOf(shown)) {
+    Heading(fmt::format("{}   {}", kPaneLetters[pane], snapshot->label));
+    Note("A picture kept earlier: it does not change.");
+    return;
+  }
   Heading(fmt::format("{}   {}", kPaneLetters[pane], shown.name));
   if (technique == nullptr) {
     Note("Not in the registry: its file has gone or its header is wrong.");
@@ -213,6 +225,12 @@ void LightsTab(PanelContext& context) {
     }
     ImGui::EndListBox();
   }
+  const float half = 0.5f * (ImGui::GetWindowContentRegionWidth() - ImGui::GetStyle().ItemSpacing.x);
+  if (ImGui::Button("Add", {half, 0.0f})) session.AddLight();
+  Tip("A copy of the selected light beside it.");
+  ImGui::SameLine();
+  if (ImGui::Button("Remove", {half, 0.0f})) session.RemoveLight();
+  Tip("The selected light; a scene keeps at least one.");
   if (session.light < 0) {
     Note("Click a light, in the list or in the picture, to edit it.");
     return;
@@ -388,6 +406,10 @@ void ViewTab(PanelContext& context, PanelRequests& requests) {
   Tip("Ctrl+S: writes what was edited into the scene file; comments and order stay.");
   if (ImGui::Button("Screenshot PNG", {-1.0f, 0.0f})) requests.screenshot = true;
   Tip("F12: the window as it is seen, into the current folder.");
+  if (ImGui::Button("Keep a snapshot", {-1.0f, 0.0f})) requests.snapshot = true;
+  Tip("K: keeps pane A's picture; the panes' menus show it, to compare it with what comes after.");
+  if (ImGui::Button("Turntable", {-1.0f, 0.0f})) requests.turntable = true;
+  Tip("72 numbered PNGs once round the target, into a folder beside the screenshots.");
   if (ImGui::Button("Linear EXR", {-1.0f, 0.0f})) requests.exr = true;
   Tip("F11: pane A's radiance with its lobes as layers, unexposed.");
 }
@@ -534,7 +556,11 @@ void DrawOverlay(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
     draw.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, color, text.c_str(), nullptr, wrap);
   };
   const float left = origin.x + u, top = origin.y + 0.8f * u;
-  const auto name = [&](int pane) { return session.panes[static_cast<std::size_t>(pane)].name; };
+  const auto name = [&](int pane) {
+    const ShownVariant& shown = session.panes[static_cast<std::size_t>(pane)];
+    const Snapshot* snapshot = session.SnapshotOf(shown);
+    return snapshot != nullptr ? snapshot->label : shown.name;
+  };
   switch (session.layout) {
     case Layout::kSingle:
       label(left, top, 0.0f, name(0));
@@ -613,6 +639,8 @@ void DrawHelp(PanelContext& context, glm::vec2 window) {
                       {"[  ]", "exposure by a third of a stop"},
                       {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
                       {"Ctrl + S", "save the scene"},
+                      {"K", "keep a snapshot of A"},
+                      {"Ctrl + R", "bring back what a crash left unsaved"},
                       {"F11  F12", "linear EXR, screenshot PNG"},
                       {"Ctrl + Q", "leave"},
                       {"Tab", "hide or show the controls"},

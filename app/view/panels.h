@@ -40,7 +40,7 @@ struct PanelContext {
 
 // What a person asked for that the window does.
 struct PanelRequests {
-  bool save = false, reload = false, screenshot = false, exr = false, turntable = false, toggle_help = false;
+  bool save = false, reload = false, screenshot = false, exr = false, turntable = false, snapshot = false, toggle_help = false;
 };
 
 // Where pane i of a grid of `count` lies in a picture of that size: left, top, width, height.

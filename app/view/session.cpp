@@ -1,13 +1,21 @@
 #include "app/view/session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <system_error>
 #include <utility>
 
+#include "scenes/error.h"
 #include "scenes/write.h"
 
 namespace arealab {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 constexpr std::size_t kMaxUndo = 500;
@@ -38,7 +46,15 @@ bool Same(const Camera& a, const Camera& b) {
   return a.position == b.position && a.target == b.target && a.up == b.up && a.vertical_fov == b.vertical_fov;
 }
 
-Session::Session(Scene opened) : scene(std::move(opened)), on_disk_(scene), file_camera_(scene.camera), committed_(Current()) {}
+Session::Session(Opened opened)
+    : scene(std::move(opened.scene)), on_disk_(scene), text_(std::move(opened.text)), file_camera_(scene.camera),
+      committed_(Current()) {}
+
+const Snapshot* Session::SnapshotOf(const ShownVariant& pane) const {
+  if (!pane.name.starts_with('#')) return nullptr;
+  const auto i = static_cast<std::size_t>(std::atoi(pane.name.c_str() + 1));
+  return i >= 1 && i <= snapshots.size() ? &snapshots[i - 1] : nullptr;
+}
 
 void Session::Set(const Edits& edits) {
   scene.lights = edits.lights;
@@ -75,11 +91,85 @@ bool Session::Dirty() const {
   return !Same(Current(), {on_disk_.lights, on_disk_.materials, on_disk_.exposure}) || !Same(file_camera_, on_disk_.camera);
 }
 
-void Session::Save() {
+Scene Session::Saved() const {
   Scene saved = scene;
   saved.camera = file_camera_;
+  return saved;
+}
+
+void Session::Save() {
+  Scene saved = Saved();
+  if (!text_.empty()) WriteSceneText(scene.file, text_);
+  text_.clear();
   SaveScene(on_disk_, saved);
   on_disk_ = std::move(saved);
+  Autosave();
+}
+
+// Named by the scene file's whole path, of which any character may be in a file name but the separator.
+fs::path Session::AutosaveFile() const {
+  fs::path folder;
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0') {
+    folder = state;
+  } else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
+    folder = fs::path(home) / ".local" / "state";
+  } else {
+    return {};
+  }
+  std::error_code error;
+  std::string name = fs::absolute(scene.file, error).string();
+  std::replace(name.begin(), name.end(), '/', '%');
+  return folder / "arealab" / name;
+}
+
+void Session::Autosave() {
+  const fs::path file = AutosaveFile();
+  const Edits now = Current();
+  if (file.empty() || (autosaved_ && Same(*autosaved_, now))) return;
+  std::error_code error;
+  if (!Dirty()) {
+    // What an earlier session left stays until this one has something of its own to say.
+    if (autosaved_) fs::remove(file, error);
+    if (autosaved_) autosaved_ = now;
+    return;
+  }
+  fs::create_directories(file.parent_path(), error);
+  try {
+    WriteSceneText(file, EditedText(text_.empty() ? ReadSceneText(scene.file) : text_, on_disk_, Saved()));
+  } catch (const InputError&) {
+    // A folder that cannot be written to takes away the safety net, not the work.
+  }
+  autosaved_ = now;
+}
+
+bool Session::HasLeftBehind() const {
+  std::error_code error;
+  const fs::path file = AutosaveFile();
+  return !file.empty() && fs::is_regular_file(file, error) &&
+         fs::last_write_time(file, error) >= (fs::exists(scene.file, error) ? fs::last_write_time(scene.file, error) : fs::file_time_type::min());
+}
+
+void Session::Restore() {
+  const Scene left = ParseScene(scene.file, ReadSceneText(AutosaveFile()));
+  Set({left.lights, left.materials, left.exposure});
+  Commit();
+}
+
+int Session::AddLight() {
+  Light added = light >= 0 ? scene.lights[static_cast<std::size_t>(light)] : scene.lights.front();
+  added.center += glm::dvec3(2.2 * added.half_size.x, 0.0, 0.0);
+  const auto taken = [&](const std::string& name) {
+    return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const Light& other) { return other.name == name; });
+  };
+  for (int i = 2; taken(added.name); ++i) added.name = fmt::format("light {}", i);
+  scene.lights.push_back(std::move(added));
+  return light = static_cast<int>(scene.lights.size()) - 1;
+}
+
+void Session::RemoveLight() {
+  if (light < 0 || scene.lights.size() < 2) return;
+  scene.lights.erase(scene.lights.begin() + light);
+  light = -1;
 }
 
 void Session::Replace(Scene from_disk, bool keep_camera) {
@@ -96,8 +186,52 @@ void Session::Replace(Scene from_disk, bool keep_camera) {
   redo_.clear();
 }
 
-Scene OpenScene(const std::string& name_or_path) {
-  return LoadScene(FindScene(name_or_path));
+namespace {
+
+bool IsMesh(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* known : {".gltf", ".glb", ".obj", ".ply", ".stl", ".3ds"}) {
+    if (extension == known) return true;
+  }
+  return false;
+}
+
+// A mesh of a metre's height on a floor, a softbox at its upper left, a camera that holds all of it.
+Opened MeshScene(const fs::path& mesh) {
+  const bool gltf = mesh.extension() == ".gltf" || mesh.extension() == ".glb";
+  const auto text = [&](const glm::dvec3& eye, double floor) {
+    return fmt::format(
+        "# How does {0} look under a softbox?\n[camera]\nposition = [{1:.3f}, {2:.3f}, {3:.3f}]\ntarget = [0.0, 0.0, 0.45]\n"
+        "vertical_fov = 35.0\n\n[[material]]\nname = \"clay\"\nbase_color = 0.5\nroughness = 0.4\n\n[[material]]\n"
+        "name = \"floor\"\nbase_color = 0.25\nroughness = 0.35\n\n[[surface]]\ntype = \"mesh\"\nfile = \"{0}\"\nheight = 1.0\n{5}"
+        "\n[[surface]]\ntype = \"plane\"\nsize = [{4:.3f}, {4:.3f}]\nmaterial = \"floor\"\n\n[[light]]\nname = \"softbox\"\n"
+        "shape = \"rectangle\"\nposition = [-1.6, -0.9, 1.9]\ntarget = [0.0, 0.0, 0.45]\nsize = [1.4, 1.4]\nradiance = 6.0\n",
+        mesh.filename().string(), eye.x, eye.y, eye.z, floor, gltf ? "" : "material = \"clay\"\n");
+  };
+  fs::path file = mesh;
+  file.replace_extension(".toml");
+  if (fs::exists(file)) file.replace_filename(mesh.stem().string() + "_view.toml");
+  const glm::dvec3 eye(0.9, -3.2, 1.5);
+  Scene scene = ParseScene(file, text(eye, 6.0));
+  // The floor is the last surface; the rest is what the camera is to hold.
+  double radius = 0.5;
+  for (std::size_t i = 0; i + 1 < scene.meshes.size(); ++i) {
+    for (const Vertex& vertex : scene.meshes[i].vertices) {
+      radius = std::max(radius, glm::distance(glm::dvec3(vertex.position), glm::dvec3(0.0, 0.0, 0.45)));
+    }
+  }
+  const double reach = radius / std::sin(0.5 * scene.camera.vertical_fov);
+  const glm::dvec3 target(0.0, 0.0, 0.45);
+  const std::string framed = text(target + reach * glm::normalize(eye - target), std::max(6.0, 8.0 * radius));
+  return {ParseScene(file, framed), framed};
+}
+
+}  // namespace
+
+Opened OpenScene(const std::string& name_or_path) {
+  if (IsMesh(name_or_path) && fs::is_regular_file(name_or_path)) return MeshScene(name_or_path);
+  return {LoadScene(FindScene(name_or_path)), ""};
 }
 
 std::filesystem::path ConfigFolder() {

@@ -31,9 +31,21 @@ bool Same(const Material& a, const Material& b);
 bool Same(const Edits& a, const Edits& b);
 bool Same(const Camera& a, const Camera& b);
 
+// A scene and, where no file holds it yet, the text that a save begins with.
+struct Opened {
+  Scene scene;
+  std::string text;
+};
+
+// A picture that was kept, to be compared with what comes after it. Panes name one "#1", "#2", …
+struct Snapshot {
+  std::string label;
+  ShadedVariant picture;
+};
+
 class Session {
  public:
-  explicit Session(Scene scene);
+  explicit Session(Opened opened);
 
   Scene scene;                 // as it is edited
   std::uint64_t geometry = 0;  // another number: other meshes
@@ -56,6 +68,10 @@ class Session {
   int material = 0;   // selected
   std::optional<glm::dvec2> inspected;  // 0 … 1 across the picture, from its top left
 
+  std::vector<Snapshot> snapshots;
+
+  // The snapshot that a pane names, or null where it names a variant.
+  const Snapshot* SnapshotOf(const ShownVariant& pane) const;
   int PaneCount() const { return layout == Layout::kGrid ? grid_panes : layout == Layout::kSingle ? 1 : 2; }
 
   // Ends an edit where one was made since the last call: call it when no control is held.
@@ -70,6 +86,15 @@ class Session {
   // Writes what was edited into the scene file; the camera only where it was made the scene's. Throws InputError.
   void Save();
   void KeepCamera() { file_camera_ = scene.camera; }
+  // Writes unsaved edits to the user's state folder where they are newer than what is there; removes it where there are
+  // none. A crash then loses no more than what came since the last call.
+  void Autosave();
+  // What an earlier session left unsaved of this scene; brought back as an edit that can be undone.
+  bool HasLeftBehind() const;
+  void Restore();
+
+  int AddLight();     // a copy of the selected one, or a first one; its index
+  void RemoveLight();  // the selected one, where it is not the last
   // Takes the scene as it is now on disk, keeping how it is looked at; edits since are dropped.
   void Replace(Scene from_disk, bool keep_camera);
 
@@ -77,15 +102,20 @@ class Session {
   Edits Current() const { return {scene.lights, scene.materials, scene.exposure}; }
   void Set(const Edits& edits);
 
+  std::filesystem::path AutosaveFile() const;
+  Scene Saved() const;  // the scene as a save would write it
+
   Scene on_disk_;
+  std::string text_;  // of a scene that no file holds yet
   Camera file_camera_;  // what the file is to hold: the one of the view wanders
   Edits committed_;
   std::vector<Edits> undo_, redo_;
+  std::optional<Edits> autosaved_;
 };
 
 // A built-in name, a scene file, or a mesh alone, which gets a floor, a camera that frames it and a softbox. Throws
 // InputError.
-Scene OpenScene(const std::string& name_or_path);
+Opened OpenScene(const std::string& name_or_path);
 
 // $XDG_CONFIG_HOME/arealab or ~/.config/arealab; made where it is missing; empty where that fails.
 std::filesystem::path ConfigFolder();

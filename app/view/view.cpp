@@ -16,6 +16,7 @@
 #include <ctime>
 #include <fstream>
 #include <future>
+#include <glm/gtc/constants.hpp>
 #include <thread>
 
 #include "app/view/camera.h"
@@ -38,6 +39,8 @@ double Seconds(Clock::duration duration) { return std::chrono::duration<double>(
 
 constexpr double kFrameSeconds = 1.0 / 60.0;
 constexpr double kMessageSeconds = 6.0;
+constexpr double kAutosaveSeconds = 3.0;
+constexpr int kTurntableFrames = 72;
 constexpr double kFlickerSeconds = 0.5;
 constexpr double kClickReach = 4.0;  // px: a press that moves less is a click
 
@@ -170,7 +173,8 @@ struct Inputs {
   bool any = false;
   std::vector<Key> keys;
   int buttons = 0;        // that are down
-  glm::dvec2 press{0.0}, release{0.0};  // where a button went down and up last, in the window
+  glm::dvec2 cursor{0.0};               // as the events tell, in the window; GLFW would say where it is by now
+  glm::dvec2 press{0.0}, release{0.0};  // where a button went down and up last
 };
 Inputs inputs;
 void Noticed() {
@@ -185,6 +189,8 @@ class View {
         watch_(options.shader_folder), bare_(options.bare) {
     watch_.SetScene(session.scene.file);
     Scale();
+    if (session.HasLeftBehind()) Say("an earlier session left unsaved edits of this scene: Ctrl + R brings them back");
+    if (!options.turntable.empty()) StartTurntable(options.turntable);
   }
 
   void Run() {
@@ -232,13 +238,16 @@ class View {
     }
     if (loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
       try {
-        Scene scene = loading_.get();
-        session_.Replace(std::move(scene), true);
+        session_.Replace(loading_.get(), true);
         Say("scene file read again");
       } catch (const std::exception& error) {
         Say(error.what(), true);
       }
       redraw_ = 3;
+    }
+    if (Seconds(Clock::now() - autosaved_) > kAutosaveSeconds) {
+      autosaved_ = Clock::now();
+      session_.Autosave();
     }
     if (!message_.empty() && Seconds(Clock::now() - said_) > (trouble_ ? 4.0 : 1.0) * kMessageSeconds) message_.clear();
   }
@@ -248,7 +257,7 @@ class View {
       Say("the scene file has changed on disk; undo your edits or save over it");
       return;
     }
-    loading_ = std::async(std::launch::async, [file = session_.scene.file] { return OpenScene(file.string()); });
+    loading_ = std::async(std::launch::async, [file = session_.scene.file] { return LoadScene(file); });
   }
 
   void Frame() {
@@ -280,14 +289,18 @@ class View {
     if (requests.toggle_help) help_ = !help_;
     if (requests.save) Save();
     if (requests.screenshot) wanted_shot_ = Numbered(".png");
+    if (requests.turntable) StartTurntable(session_.scene.name + "_turntable");
+    if (requests.snapshot) KeepSnapshot();
     if (requests.exr) wanted_shot_ = Numbered(".exr");
     if (!ImGui::IsAnyItemActive() && !gizmo_.dragging()) session_.Commit();
     ImGui::Render();
 
     Submit();
+    Title();
     Composite(framebuffer);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     Leave();
+    Turn();
     if (!wanted_shot_.empty()) Shoot(std::exchange(wanted_shot_, {}), framebuffer);
     glfwSwapBuffers(window_.window);
     Note(start);
@@ -315,6 +328,13 @@ class View {
     }
   }
 
+  // What a window list and a script can see: the scene, and whether the picture is whole.
+  void Title() {
+    const bool whole = state_.full && state_.job == submitted_ && worker_.progress() >= 1.0;
+    const std::string title = session_.scene.name + (whole ? "" : " …") + " – AreaLab";
+    if (title != title_) glfwSetWindowTitle(window_.window, (title_ = title).c_str());
+  }
+
   // ---------------------------------------------------------------------------------------------- shading
 
   glm::ivec2 PaneSize() const {
@@ -328,13 +348,17 @@ class View {
   void Submit() {
     ViewJob job;
     job.size = PaneSize();
-    for (int i = 0; i < session_.PaneCount(); ++i) job.variants.push_back(session_.panes[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < session_.PaneCount(); ++i) {
+      const ShownVariant& pane = session_.panes[static_cast<std::size_t>(i)];
+      if (!pane.name.starts_with('#')) job.variants.push_back(pane);
+    }
+    if (session_.inspected) job.probe = glm::min(glm::ivec2(*session_.inspected * glm::dvec2(job.size)), job.size - 1);
     job.effects_off = session_.effects_off;
     job.library = library_;
     job.measure = session_.measure;
     const Scene& scene = session_.scene;
     const bool same = last_.scene && job.size == last_.size && job.variants == last_.variants &&
-                      job.effects_off == last_.effects_off && job.library == last_.library && job.measure == last_.measure &&
+                      job.effects_off == last_.effects_off && job.library == last_.library && job.measure == last_.measure && job.probe == last_.probe &&
                       session_.geometry == last_geometry_ && Same(scene.camera, last_.scene->camera) &&
                       Same(Edits{scene.lights, scene.materials, 0.0}, {last_.scene->lights, last_.scene->materials, 0.0});
     if (same) {
@@ -352,9 +376,49 @@ class View {
 
   int FlickerPane() const { return static_cast<int>(Seconds(Clock::now().time_since_epoch()) / kFlickerSeconds) % 2; }
 
+  // A pane's snapshot, or its place among what the worker shades.
   const ShadedVariant* Shown(int pane) const {
-    const auto i = static_cast<std::size_t>(pane);
-    return i < state_.variants.size() ? &state_.variants[i] : nullptr;
+    const auto count = static_cast<std::size_t>(pane);
+    if (const Snapshot* snapshot = session_.SnapshotOf(session_.panes[count])) return &snapshot->picture;
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < count; ++i) place += session_.panes[i].name.starts_with('#') ? 0 : 1;
+    return place < state_.variants.size() ? &state_.variants[place] : nullptr;
+  }
+
+  void KeepSnapshot() {
+    const ShadedVariant* shaded = Shown(0);
+    if (shaded == nullptr || !shaded->image) return;
+    const std::size_t number = session_.snapshots.size() + 1;
+    session_.snapshots.push_back({fmt::format("#{} {}", number, shaded->variant.name), *shaded});
+    Say(fmt::format("kept #{}: choose it in pane B to compare it with what comes", number));
+  }
+
+  // ---------------------------------------------------------------------------------------------- turntable
+
+  void StartTurntable(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+      const InputError trouble(fmt::format("{}: {}; expected a folder that may be made", folder.string(), error.message()));
+      if (options_.frames > 0) throw trouble;
+      return Say(trouble.what(), true);
+    }
+    turntable_ = folder;
+    turn_ = 0;
+    bare_ = true;
+  }
+
+  // One step of it: the picture as it is seen, then the camera goes on, once round.
+  void Turn() {
+    if (turntable_.empty() || !state_.full || state_.job != submitted_) return;
+    const int count = options_.turntable.empty() ? kTurntableFrames : options_.frames;
+    wanted_shot_ = turntable_ / fmt::format("{:04}.png", turn_ + 1);
+    Orbit(session_.scene.camera, 2.0 * glm::pi<double>() / count, 0.0);
+    redraw_ = 2;
+    if (++turn_ < count) return;
+    turntable_.clear();
+    bare_ = options_.bare;
+    done_ = !options_.turntable.empty();
   }
 
   void Composite(glm::ivec2 framebuffer) {
@@ -507,13 +571,18 @@ class View {
       inspected_lobe_ = session_.lobe;
       inspection_ = InspectPixel(session_.scene, *state_.pixels, *pixel, session_.lobe);
     }
+    inspection_.pixel = glm::ivec2(*session_.inspected * glm::dvec2(PaneSize()));
     inspection_.values.clear();
+    const auto lobe = [&](const glm::vec3& diffuse, const glm::vec3& specular) {
+      return session_.lobe == Lobe::kTotal ? diffuse + specular : session_.lobe == Lobe::kDiffuse ? diffuse : specular;
+    };
     for (const ShadedVariant& shaded : state_.variants) {
       if (!shaded.image || shaded.image->size() != state_.pixels->size()) continue;
-      const glm::vec3 v = session_.lobe == Lobe::kTotal     ? shaded.image->Total(*pixel)
-                          : session_.lobe == Lobe::kDiffuse ? shaded.image->diffuse[*pixel]
-                                                            : shaded.image->specular[*pixel];
-      inspection_.values.emplace_back(shaded.variant.name, v);
+      inspection_.values.emplace_back(shaded.variant.name, lobe(shaded.image->diffuse[*pixel], shaded.image->specular[*pixel]));
+    }
+    for (const auto& [name, value] : state_.probes) {
+      const bool known = std::any_of(inspection_.values.begin(), inspection_.values.end(), [&](const auto& v) { return v.first == name; });
+      if (!known) inspection_.values.emplace_back(name, lobe(value.first, value.second));
     }
   }
 
@@ -536,6 +605,7 @@ class View {
       case GLFW_KEY_Z: return shift ? session_.Redo() : session_.Undo();
       case GLFW_KEY_Y: return session_.Redo();
       case GLFW_KEY_S: return Save();
+      case GLFW_KEY_R: return Restore();
       case GLFW_KEY_Q: return glfwSetWindowShouldClose(window_.window, GLFW_TRUE);
       default: return;
     }
@@ -554,6 +624,7 @@ class View {
       case GLFW_KEY_S: session_.gizmo = GizmoMode::kScale; break;
       case GLFW_KEY_X: std::swap(session_.panes[0], session_.panes[1]); break;
       case GLFW_KEY_A: ExposeAutomatically(); break;
+      case GLFW_KEY_K: KeepSnapshot(); break;
       case GLFW_KEY_F: {
         const auto [pane_origin, pane_size] = Pane(Mouse());
         const auto pixel = PixelAt((Mouse() - pane_origin) / pane_size);
@@ -593,6 +664,16 @@ class View {
     }
   }
 
+  void Restore() {
+    if (!session_.HasLeftBehind()) return Say("no earlier session left unsaved edits of this scene");
+    try {
+      session_.Restore();
+      Say("unsaved edits brought back; Ctrl + Z undoes that");
+    } catch (const std::exception& error) {
+      Say(error.what(), true);
+    }
+  }
+
   // The first name that is free: gloss_0001.png.
   fs::path Numbered(const std::string& extension) const {
     for (int i = 1;; ++i) {
@@ -619,7 +700,7 @@ class View {
         }
         WritePngCodes(file, picture, framebuffer.x);
       }
-      Say("wrote " + file.string());
+      if (turntable_.empty()) Say("wrote " + file.string());
     } catch (const std::exception& error) {
       if (options_.frames > 0) throw;
       Say(error.what(), true);
@@ -629,6 +710,7 @@ class View {
   // For scripts: so many frames of the whole picture, the screenshot, and out.
   void Leave() {
     if (options_.frames <= 0 || !state_.full || state_.job != submitted_ || done_) return;
+    if (!turntable_.empty()) return;
     redraw_ = std::max(redraw_, 1);
     if (++drawn_ < options_.frames) return;
     done_ = true;
@@ -663,7 +745,7 @@ class View {
 
   ViewJob last_;
   std::uint64_t last_geometry_ = 0, submitted_ = 0, full_job_ = 0, shown_job_ = 0, library_ = 0;
-  Clock::time_point submitted_at_{}, last_frame_{}, said_{};
+  Clock::time_point submitted_at_{}, last_frame_{}, said_{}, autosaved_ = Clock::now();
   std::vector<std::pair<std::uint64_t, Clock::time_point>> waiting_;  // jobs whose picture is not yet seen, and their input
   Figures figures_;
 
@@ -671,19 +753,22 @@ class View {
   Drag drag_ = Drag::kNone;
   glm::dvec2 pressed_{0.0}, dragged_{0.0};
   std::string message_, told_;
-  fs::path wanted_shot_;
+  fs::path wanted_shot_, turntable_;
+  std::string title_;
   std::shared_ptr<const RadianceImage> floor_of_;
   double floor_ = 0.0;
   float unit_ = 16.0f;
-  int redraw_ = 3, drawn_ = 0;
+  int redraw_ = 3, drawn_ = 0, turn_ = 0;
   bool bare_ = false, help_ = false, trouble_ = false, done_ = false;
 };
 
 void WatchInputs(GLFWwindow* window) {
-  glfwSetCursorPosCallback(window, [](GLFWwindow*, double, double) { Noticed(); });
-  glfwSetMouseButtonCallback(window, [](GLFWwindow* source, int, int action, int) {
-    glm::dvec2& place = action == GLFW_PRESS ? inputs.press : inputs.release;
-    glfwGetCursorPos(source, &place.x, &place.y);
+  glfwSetCursorPosCallback(window, [](GLFWwindow*, double x, double y) {
+    inputs.cursor = {x, y};
+    Noticed();
+  });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow*, int, int action, int) {
+    (action == GLFW_PRESS ? inputs.press : inputs.release) = inputs.cursor;
     inputs.buttons = std::max(inputs.buttons + (action == GLFW_PRESS ? 1 : -1), 0);
     Noticed();
   });
@@ -724,17 +809,18 @@ void ChoosePanes(const ViewOptions& options, Session& session) {
 }  // namespace
 
 void RunView(const ViewOptions& options) {
-  Scene scene = OpenScene(options.scene);
+  Opened opened = OpenScene(options.scene);
   const GlfwLibrary glfw;
   Remembered remembered = Remembered::Load();
   Worker worker(options.context, options.shader_folder, [] { glfwPostEmptyEvent(); });
-  Session session(std::move(scene));
+  Session session(std::move(opened));
   session.navigation = static_cast<Navigation>(remembered.navigation);
   ChoosePanes(options, session);
   GlfwWindow window(options.size.value_or(remembered.size), session.scene.name + " – AreaLab");
   WatchInputs(window.window);
   const ImGuiLibrary imgui(window.window);
   View(options, window, worker, session).Run();
+  session.Autosave();  // what is unsaved now is offered at the next start
   if (!options.size) glfwGetWindowSize(window.window, &remembered.size.x, &remembered.size.y);
   remembered.navigation = static_cast<int>(session.navigation);
   remembered.Save();

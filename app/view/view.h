@@ -21,6 +21,7 @@ struct ViewOptions {
   bool bare = false;                    // the picture alone
   int frames = 0;                       // draws this many once the picture is whole, then leaves; 0: until closed
   std::filesystem::path screenshot;     // written before it leaves: .png as seen, .exr pane A's radiance
+  std::filesystem::path turntable;      // with frames: a folder for so many pictures once round the target, 0001.png …
   bool json = false;                    // figures of this session on standard output at the end
 };
 

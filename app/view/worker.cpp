@@ -28,7 +28,7 @@ constexpr double kMovingSeconds = 0.040;
 // A strip of a full picture: the longest that a new job waits for an old one.
 constexpr double kStripSeconds = 0.015;
 // Things rest when no newer job has come for this long.
-constexpr auto kRest = std::chrono::milliseconds(70);
+constexpr auto kRest = std::chrono::milliseconds(50);
 constexpr int kMaxDivisor = 8;
 
 // Seconds per pixel, followed as they change.
@@ -61,6 +61,7 @@ class Worker::Shading {
     }
     // What is quick enough for a hand is never dropped, or a hand that keeps moving would see nothing.
     DrawPicture(job, number, job.size, true, divisor > 1);
+    if (job.probe) Probe(job);
     if (job.measure) Measure(job, number);
   }
 
@@ -100,13 +101,10 @@ class Worker::Shading {
     const SurfacePixels& pixels = renderer_->DrawScene(*job.scene, size, job.effects_off);
     const auto emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(*job.scene, pixels));
     scene_rate_.Add(Since(start), static_cast<double>(size.x) * size.y);
-    std::shared_ptr<const SurfacePixels> kept;
-    if (full) kept = std::make_shared<const SurfacePixels>(pixels);
     worker_.Publish([&](ViewState& state) {
       state.error.clear();
       state.variants.resize(job.variants.size());
-      if (full) state.pixels = kept;
-      if (full) state.pixels_job = number;
+      state.probes.clear();
     });
     for (std::size_t i = 0; i < job.variants.size(); ++i) {
       ShadedVariant shaded{job.variants[i], number, nullptr, emission, "", 0.0};
@@ -119,7 +117,11 @@ class Worker::Shading {
       }
       worker_.Publish([&](ViewState& state) { state.variants[i] = std::move(shaded); });
     }
-    if (full) worker_.Publish([&](ViewState& state) { state.full = true; });
+    auto kept = std::make_shared<const SurfacePixels>(pixels);
+    worker_.Publish([&](ViewState& state) {
+      state.pixels = std::move(kept);
+      state.full = full;
+    });
   }
 
   // In strips where it may be dropped, so that a newer job need not wait for it.
@@ -144,6 +146,27 @@ class Worker::Shading {
       if (may_stop) worker_.progress_ = progress + share * row / size.y;
     }
     return image;
+  }
+
+  // One row of each technique is enough to see one pixel of it.
+  void Probe(const ViewJob& job) {
+    const std::vector<Variant> variants = DefaultVariants(*techniques_);
+    const std::size_t pixel = static_cast<std::size_t>(job.probe->y) * static_cast<std::size_t>(job.size.x) +
+                              static_cast<std::size_t>(job.probe->x);
+    RadianceImage image;
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      if (worker_.stop_ || worker_.Overtaken()) throw Cancelled();
+      worker_.progress_ = static_cast<double>(i) / static_cast<double>(variants.size());
+      if (WhyUnsupported(variants[i], *job.scene)) continue;
+      try {
+        renderer_->ShadeRows(variants[i], {}, job.probe->y, 1, image);
+      } catch (const std::exception&) {
+        continue;  // a shader that does not compile says so where it is shown
+      }
+      worker_.Publish([&](ViewState& state) {
+        state.probes[variants[i].ShortName()] = {image.diffuse[pixel], image.specular[pixel]};
+      });
+    }
   }
 
   void Measure(const ViewJob& job, std::uint64_t number) {

@@ -15,6 +15,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "compare/context.h"
@@ -38,6 +39,7 @@ struct ViewJob {
   std::set<std::string> effects_off;
   std::uint64_t library = 0;  // another number: shader files have changed, read them again
   bool measure = false;       // time the variants once the picture is whole
+  std::optional<glm::ivec2> probe;  // a pixel at which every technique's default is shaded once the picture is whole
 };
 
 // What became of one variant of a job.
@@ -60,12 +62,12 @@ struct ViewState {
   std::uint64_t job = 0;                          // begun last
   bool full = false;                              // every variant of that job at its full size
   std::vector<ShadedVariant> variants;            // in the job's order
-  std::shared_ptr<const SurfacePixels> pixels;    // of the last picture at full size
-  std::uint64_t pixels_job = 0;
+  std::shared_ptr<const SurfacePixels> pixels;    // of the last picture, coarse or whole
   std::shared_ptr<const std::vector<Technique>> techniques;  // null before the first job
   std::string error;                                         // of the scene or the registry as a whole
   std::map<std::string, Cost> costs;                         // by variant, of `costs_job`
   std::uint64_t costs_job = 0;
+  std::map<std::string, std::pair<glm::vec3, glm::vec3>> probes;  // diffuse, specular at the job's probe, by variant
   std::string platform, renderer;
   bool software = true;
 };

@@ -141,7 +141,8 @@ class Window:
         self.do("search", "--sync", "--name", "AreaLab")
 
     def do(self, *arguments):
-        subprocess.run(["xdotool", *map(str, arguments)], check=True, env=environment(), timeout=30, capture_output=True)
+        return subprocess.run(["xdotool", *map(str, arguments)], check=True, env=environment(), timeout=30, capture_output=True,
+                              text=True).stdout
 
     def log(self):
         return self.log_file.read_text()
@@ -164,16 +165,10 @@ class Window:
         return kept.read_bytes()
 
     def settled(self):
-        """The same twice in a row, since what is coarse gives way to what is whole."""
-        last = None
-
-        def same():
-            nonlocal last
-            before, last = last, self.shot()
-            return before == last
-
-        until(same, "picture at rest", 30.0)
-        return last
+        """The window once its picture is whole, which the title says."""
+        time.sleep(0.25)  # for what was done to arrive
+        until(lambda: "…" not in self.do("search", "--name", "AreaLab", "getwindowname"), "whole picture", 30.0)
+        return self.shot()
 
     def picture(self):
         """The rows of the picture alone, without what is written at its head and foot."""
