@@ -41,6 +41,7 @@ void AddList(CLI::App& app, int& status);
 void AddFit(CLI::App& app, int& status);
 void AddCheck(CLI::App& app, int& status);
 void AddCost(CLI::App& app, int& status);
+void AddSweep(CLI::App& app, int& status, const std::string& command_line);
 void AddView(CLI::App& app, int& status);
 void AddStress(CLI::App& app, int& status);
 

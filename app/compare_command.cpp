@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 
 #include "app/commands.h"
 #include "app/progress.h"
 #include "compare/baseline.h"
 #include "compare/harness.h"
 #include "compare/report.h"
+#include "compare/sweep.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -23,6 +26,7 @@ struct CompareArguments {
   std::string out = "out";
   std::vector<std::string> gpus;
   std::string baseline;
+  std::vector<std::string> merge;
   double tolerance = 1e-4;
   bool all_variants = false;
   bool timing = false;
@@ -108,7 +112,22 @@ std::string PrepareCost(const CompareArguments& arguments, CompareOptions& optio
   return "";
 }
 
+// Joins the parts of a sweep: folders or their results.json.
+int Merge(const CompareArguments& arguments) {
+  std::vector<std::string> parts;
+  for (const std::string& part : arguments.merge) {
+    const std::filesystem::path file = std::filesystem::is_directory(part) ? std::filesystem::path(part) / "results.json" : std::filesystem::path(part);
+    std::ifstream in(file);
+    if (!in) throw InputError(fmt::format("{}: cannot be read; expected results of `arealab sweep`", file.string()));
+    parts.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  }
+  fmt::print("{}", WriteSweep(parts, arguments.out));
+  fmt::print("sweep: {}\n", (std::filesystem::absolute(arguments.out) / "index.html").lexically_normal().string());
+  return 0;
+}
+
 int RunCompare(const CompareArguments& arguments, const std::string& command_line) {
+  if (!arguments.merge.empty()) return Merge(arguments);
   std::vector<Limit> limits;
   for (const std::string& text : arguments.limits) limits.push_back(ParseLimit(text));
 
@@ -173,6 +192,7 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
   command->add_option("--baseline", arguments->baseline,
                       "results.json of an earlier run: exit with status 1 where something is slower or less accurate beyond the noise")
       ->check(CLI::ExistingFile);
+  command->add_option("--merge", arguments->merge, "folders of `arealab sweep --shard`: joins them into --out, and does nothing else");
   command->add_option("--tolerance", arguments->tolerance, "of the truth, relative, per pixel and light")
       ->capture_default_str()
       ->check(CLI::Range(1e-8, 1e-1));

@@ -107,8 +107,8 @@ void PrintClaims(const ShaderLibrary& library, const std::vector<Technique>& tec
   }
   fmt::print("Hill & Heitz 2016: 0.9 ms on a PlayStation 4 at 1080p, diffuse and specular, beside our technique core, estimated from bonaire ISA\n{}",
              AlignedTable(rows));
-  fmt::print("  What differs: theirs was measured, with its vendor's compiler and whatever share of the picture the light reached; ours is a count for\n"
-             "  every pixel of the picture, with memory free and a Fresnel term, which their talk names as still to come.\n");
+  fmt::print("  What differs: theirs was measured, with the vendor's compiler; the talk does not say how much of the picture the light reached. Ours is\n"
+             "  a count for every pixel of the picture, with memory free and a Fresnel term, which the talk names as still to come.\n");
 }
 
 // Cycles as they were stored: {"compilers": "…", "cycles": {"rectangle": {"ltc": {"bonaire": 2545, …}, …}, …}}.

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   arealab::AddFit(app, status);
   arealab::AddCheck(app, status);
   arealab::AddCost(app, status);
+  arealab::AddSweep(app, status, CommandLine(argc, argv));
   arealab::AddView(app, status);
   arealab::AddStress(app, status);
   try {

@@ -70,13 +70,11 @@ VariantResult Describe(const Variant& variant, const Scene& scene) {
 
 // Times the passes of the variants that have an image, on the scene that the renderer drew last.
 void Time(const Context& context, Renderer& renderer, const std::vector<Variant>& variants, const Variant& point,
-          int lit_pixels, std::vector<VariantResult>& results, const std::function<void(double)>& progress) {
+          int lit_pixels, std::vector<VariantResult>& results, TimingOptions options) {
   std::vector<Variant> timed;
   for (std::size_t v = 0; v < variants.size(); ++v) {
     if (results[v].image) timed.push_back(variants[v]);
   }
-  TimingOptions options;
-  options.progress = progress;
   const std::vector<Timing> timings = MeasureTimes(context, renderer, timed, point, lit_pixels, options);
   auto timing = timings.begin();
   for (VariantResult& result : results) {
@@ -227,8 +225,9 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     }
     if (options.timed_against) {
       measuring.wait();  // the clock is this process's, on every core
-      Time(context, renderer, options.variants, *options.timed_against, result.lit_pixels, result.variants,
-           [&](double fraction) { report("times", 0.7 + 0.15 * fraction); });
+      TimingOptions timing = options.timing;
+      timing.progress = [&](double fraction) { report("times", 0.7 + 0.15 * fraction); };
+      Time(context, renderer, options.variants, *options.timed_against, result.lit_pixels, result.variants, timing);
     }
     if (options.cost) {
       CountCycles(*options.cost, library, options.variants, scene, result.variants, results.no_isa,

@@ -12,6 +12,7 @@
 #include "compare/cost.h"
 #include "compare/results.h"
 #include "compare/shadowed_truth.h"
+#include "compare/timing.h"
 #include "compare/truth.h"
 #include "glsl/renderer.h"
 #include "glsl/shader_library.h"
@@ -27,6 +28,7 @@ struct CompareOptions {
   ShadowOptions shadow;
   std::filesystem::path cache;                               // folder of truths that are already known
   std::optional<Variant> timed_against;                      // `point`, where the passes are to be timed
+  TimingOptions timing;
   std::shared_ptr<const CostMeter> cost;                     // what compiles for GPUs that are not here; may be null
   std::function<void(const std::string&, double)> progress;  // what is being done, fraction of the whole
 };

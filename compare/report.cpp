@@ -450,4 +450,12 @@ void WriteReport(const Results& results, const fs::path& directory,
   partial.MoveIntoPlace();
 }
 
+std::string SweepPage(const std::string& results) {
+  std::string html(ReportFile("sweep.html"));
+  html = Substitute(std::move(html), "/*arealab:css*/", ReportFile("report.css"));
+  html = Substitute(std::move(html), "/*arealab:d3*/", plot_library::kFiles[0].bytes());
+  html = Substitute(std::move(html), "/*arealab:js*/", ReportFile("sweep.js"));
+  return Substitute(std::move(html), "{\"arealab\": \"results\"}", results);
+}
+
 }  // namespace arealab

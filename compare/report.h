@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "compare/results.h"
 
@@ -28,5 +29,8 @@ void CheckReportDirectory(const std::filesystem::path& directory);
 // written.
 void WriteReport(const Results& results, const std::filesystem::path& directory,
                  const std::function<void(double)>& progress = {});
+
+// The page of `arealab sweep`; `results`: its results.json, safe within a script element.
+std::string SweepPage(const std::string& results);
 
 }  // namespace arealab
