@@ -1,10 +1,21 @@
 #!/bin/sh
-# Makes the README's picture, compare/report/overview.png: the report's first screen, in headless Chromium.
+# Makes the README's pictures: compare/report/overview.png, the report's first screen in headless Chromium, and
+# app/view/window.png, the window under Xvfb. `sh app/picture.sh window` makes the latter alone.
 set -eu
 sh "$(dirname "$0")/setup.sh" test
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+server=""
+trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
+
+Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$work/display" 2>/dev/null &
+server=$!
+while [ ! -s "$work/display" ]; do sleep 0.1; done
+DISPLAY=:$(cat "$work/display") XDG_CONFIG_HOME="$work" XDG_STATE_HOME="$work" build/bin/arealab view shapes \
+  --technique drobot --technique reference --size 1280x720 --frames 3 --screenshot "$work/window.png"
+mv "$work/window.png" app/view/window.png
+[ "${1:-}" != window ] || exit 0
+
 build/bin/arealab compare gloss mirror spheres scan sixteen --size 384x384 --out "$work/out"
 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
   --disable-component-update --disable-sync --hide-scrollbars --user-data-dir="$work/profile" \

@@ -78,8 +78,14 @@ std::vector<glm::dvec3> Outline(const Light& light, const Projection& view) {
     }
     case LightShape::kDisk:
       return Circle(light.center, x, y);
-    case LightShape::kSphere:
-      return Circle(light.center, light.half_size.x * view.right, light.half_size.x * view.up);
+    case LightShape::kSphere: {  // where lines of sight touch it
+      const glm::dvec3 to = light.center - view.position;
+      const double ratio = light.half_size.x / glm::length(to);
+      if (ratio >= 1.0) return {};
+      const glm::dvec3 u = glm::normalize(glm::cross(to, view.up)), v = glm::normalize(glm::cross(to, u));
+      const double radius = light.half_size.x * std::sqrt(1.0 - ratio * ratio);
+      return Circle(light.center - ratio * ratio * to, radius * u, radius * v);
+    }
   }
   return {};
 }

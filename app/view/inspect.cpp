@@ -60,7 +60,8 @@ Inspection InspectPixel(const Scene& scene, const SurfacePixels& pixels, std::si
   for (const Light& light : scene.lights) {
     inspection.form_factor += IntegrateLight(point, light, 1e-4).form_factor;
     if (scene.lights.size() <= 4) {
-      inspection.clipping += (inspection.clipping.empty() ? "" : "; ") + Clipping(light, point.position, point.normal);
+      if (!inspection.clipping.empty()) inspection.clipping += '\n';
+      inspection.clipping += Clipping(light, point.position, point.normal);
     }
   }
   if (inspection.clipping.empty()) inspection.clipping = fmt::format("{} lights", scene.lights.size());

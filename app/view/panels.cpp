@@ -142,6 +142,16 @@ bool Scalar(const char* id, double& value, float speed, double low, double high,
   return true;
 }
 
+// Of the black body whose colour is nearest, to 25 K.
+float NearestKelvin(const glm::dvec3& radiance) {
+  const glm::dvec3 hue = radiance / Luminance(radiance);
+  float nearest = 1700.0f;
+  for (float kelvin = 1700.0f; kelvin <= 12000.0f; kelvin += 25.0f) {
+    if (glm::distance(PlanckianColor(kelvin), hue) < glm::distance(PlanckianColor(nearest), hue)) nearest = kelvin;
+  }
+  return nearest;
+}
+
 // The light's own axes turned so that its normal is `normal`, its x axis level where that can be.
 void Aim(Light& light, const glm::dvec3& normal) {
   light.normal = glm::normalize(normal);
@@ -203,9 +213,9 @@ void LightControls(Session& session) {
   Tip("Hue, linear sRGB; the luminance stays.");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1.0f);
-  static float kelvin = 6500.0f;
+  float kelvin = NearestKelvin(light.radiance);
   if (ImGui::SliderFloat("##kelvin", &kelvin, 1700.0f, 12000.0f, "%.0f K")) recolor(PlanckianColor(kelvin));
-  Tip("Colour temperature of a black body, kelvin: 2700 a bulb, 6500 daylight. Sets the colour.");
+  Tip("Colour temperature of a black body, kelvin, that comes nearest to the colour: 2700 a bulb, 6500 daylight. Turning it sets the colour.");
   if (light.shape != LightShape::kSphere) {
     Row("Two-sided", "", "");
     ImGui::Checkbox("##two_sided", &light.two_sided);
@@ -319,20 +329,23 @@ void PixelTab(PanelContext& context) {
   Row("Form factor", "", "The share of the cosine-weighted hemisphere that the lights fill, summed");
   ImGui::Text("%.5g", pixel.form_factor);
   Row("Horizon", "", "How many of a light's corners (a sphere: its top and bottom) lie above the surface's plane");
+  ImGui::BeginGroup();
   ImGui::TextUnformatted(pixel.clipping.c_str());
-  Heading(fmt::format("{} radiance   {}", session.lobe == Lobe::kTotal ? "Total" : session.lobe == Lobe::kDiffuse ? "Diffuse" : "Specular",
+  ImGui::EndGroup();
+  Heading(fmt::format("{}, luminance   {}", session.lobe == Lobe::kTotal ? "Total" : session.lobe == Lobe::kDiffuse ? "Diffuse" : "Specular",
                       RadianceUnit(session.scene)));
   if (ImGui::BeginTable("##values", 3, ImGuiTableFlags_SizingStretchProp)) {
-    ImGui::TableSetupColumn("name", 0, 1.1f);
-    ImGui::TableSetupColumn("value", 0, 1.6f);
-    ImGui::TableSetupColumn("error", 0, 0.8f);
+    ImGui::TableSetupColumn("name", 0, 1.5f);
+    ImGui::TableSetupColumn("value", 0, 1.0f);
+    ImGui::TableSetupColumn("error", 0, 1.0f);
     const auto row = [&](const std::string& name, const glm::dvec3& value, bool truth) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(name.c_str());
       Tip(name);
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(Radiance(value).c_str());
+      ImGui::Text("%.4g", Luminance(value));
+      Tip(fmt::format("Linear sRGB: {}", Radiance(value)));
       ImGui::TableNextColumn();
       const double reference = Luminance(pixel.truth);
       if (truth) {

@@ -814,6 +814,7 @@ void RunView(const ViewOptions& options) {
   Remembered remembered = Remembered::Load();
   Worker worker(options.context, options.shader_folder, [] { glfwPostEmptyEvent(); });
   Session session(std::move(opened));
+  session.light = 0;  // its handles say what can be done; Escape puts them away
   session.navigation = static_cast<Navigation>(remembered.navigation);
   ChoosePanes(options, session);
   GlfwWindow window(options.size.value_or(remembered.size), session.scene.name + " – AreaLab");

@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 double Since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // While things move a picture may take this long: with the window's own share it stays below 100 ms from input to light.
-constexpr double kMovingSeconds = 0.040;
+constexpr double kMovingSeconds = 0.030;
 // A strip of a full picture: the longest that a new job waits for an old one.
 constexpr double kStripSeconds = 0.015;
 // Things rest when no newer job has come for this long.
