@@ -21,6 +21,7 @@
 #include "glsl/effects.h"
 #include "glsl/expand.h"
 #include "scenes/error.h"
+#include "scenes/shapes.h"
 
 namespace arealab {
 namespace {
@@ -215,8 +216,7 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     bool known = true;
     std::vector<std::pair<std::size_t, std::string>> places;  // variant, "core", "full" or a path
   };
-  auto lit = SceneEffects(scene);
-  lit.emplace_back("PATH_LIT", 1);
+  const std::vector<Effect> effects = SceneEffects(scene);
   const Text vertex{Expand(library, "core.vert", {}, {}, Precision::kFloat), true, 0, "core.vert"};
   std::vector<Entry> entries;
   std::map<std::string, std::size_t> index;  // by text
@@ -230,7 +230,9 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     return at->first;
   };
   for (std::size_t v = 0; v < variants.size(); ++v) {
-    if (WhyUnsupported(variants[v], scene)) continue;
+    if (WhyUnsupported(variants[v], scene, effects)) continue;
+    EffectDefines lit = Defines(effects, variants[v].effects);
+    lit.emplace_back("PATH_LIT", 1);
     add(v, "full", "lighting.frag", 2, lit);
     if (add(v, "core", "core.frag", 1, lit).find("#if PATH_ABOVE") == std::string::npos) continue;
     for (const std::string path : kPaths) {
@@ -333,18 +335,20 @@ Scene SceneOfEffects(const std::vector<std::string>& effects) {
   if (!scene.lights.empty()) {
     if (has("many_lights") && scene.lights.size() == 1) scene.lights.push_back(scene.lights[0]);
     scene.lights[0].two_sided = has("two_sided");
+    scene.lights[0].radiance = {1.0, 0.9, 0.8};
   }
   Material material;
   material.metalness = has("diffuse") ? 0.0f : 1.0f;
-  if (!has("fresnel")) material.base_color = glm::vec3(1.0f);
+  material.base_color = has("fresnel") ? glm::vec3(0.8f, 0.7f, 0.6f) : glm::vec3(1.0f);
+  // Across the lights' planes, its normals anywhere: every effect of the geometry is on.
+  material.normal_texture = std::make_shared<Image>(Image{1, 1, {glm::vec4(0.5f, 0.5f, 1.0f, 1.0f)}});
   scene.materials.push_back(material);
+  scene.meshes.push_back(MakePlane({2.0, 2.0}, {{0.0, 0.0, 0.0}, RotationFromDegrees({30.0, 0.0, 0.0})}));
   // The scene may call for more than was asked for: a second shape is a second light.
-  for (const auto& [define, on] : SceneEffects(scene)) {
-    std::string name = define.substr(define.find('_') + 1);
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if ((on != 0) != has(name.c_str())) {
+  for (const char* name : kNames) {
+    if (const bool on = SceneEffect(scene, name).on; on != has(name)) {
       throw InputError(fmt::format("--effects {}: no scene has these {} {}; expected e.g. rectangle,diffuse,specular,fresnel",
-                                   fmt::join(effects, ","), on != 0 ? "without" : "with", name));
+                                   fmt::join(effects, ","), on ? "without" : "with", name));
     }
   }
   return scene;

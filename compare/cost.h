@@ -68,7 +68,7 @@ class CostMeter {
   std::string worker_;
 };
 
-// A scene that calls for exactly these effects ("rectangle", "disk", "sphere", "two_sided", "diffuse", "specular",
+// A scene that calls for exactly these effects and for all that are not named here ("rectangle", "disk", "sphere", "two_sided", "diffuse", "specular",
 // "fresnel", "many_lights"). Throws InputError that lists them, or says that there is no such scene.
 Scene SceneOfEffects(const std::vector<std::string>& effects);
 

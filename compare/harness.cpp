@@ -5,7 +5,6 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <thread>
 
@@ -39,13 +38,6 @@ std::map<std::string, std::string> Machine() {
           {"cores", std::to_string(std::thread::hardware_concurrency())},
           {"os", Fact("/etc/os-release", "PRETTY_NAME")},
           {"compiler", "g++ " __VERSION__}};
-}
-
-// "EFFECT_TWO_SIDED" → "two_sided", as technique headers write it.
-std::string EffectName(const std::string& define) {
-  std::string name = define.substr(define.find('_') + 1);
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
 }
 
 int CountLit(const RadianceImage& image) {
@@ -205,8 +197,8 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     result.width = pixels.width;
     result.height = pixels.height;
     result.exposure = scene.exposure;
-    for (const auto& [define, on] : SceneEffects(scene)) {
-      if (on != 0) result.effects.push_back(EffectName(define));
+    for (const Effect& effect : SceneEffects(scene)) {
+      if (effect.on) result.effects.push_back(effect.name);
     }
     result.truth_relative_error = truth.worst_relative_error;
     result.truth_seconds = truth.seconds;

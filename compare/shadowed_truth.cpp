@@ -57,8 +57,8 @@ class SampledLight {
   SampledLight(const ShadedPixel& pixel, const Light& light, const LightIntegrals& integrals,
                const LightDirections& directions, std::uint64_t seed)
       : unshadowed{pixel.albedo * light.radiance * integrals.form_factor,
-                   pixel.f0 * light.radiance * integrals.specular,
-                   (1.0 - pixel.f0) * light.radiance * integrals.specular_grazing},
+                   pixel.specular_weight * pixel.f0 * light.radiance * integrals.specular,
+                   pixel.specular_weight * (1.0 - pixel.f0) * light.radiance * integrals.specular_grazing},
         point_(&pixel.point),
         directions_(directions),
         seed_(seed) {

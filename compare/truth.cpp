@@ -31,7 +31,8 @@ std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels
   pixel.point.brdf = scene.brdf;
   if (!(glm::dot(pixel.point.normal, pixel.point.to_view) > 0.0)) return std::nullopt;
   glm::dvec3 base(pixels.base_color[i]);
-  double metalness = static_cast<double>(pixels.base_color[i].w);
+  double metalness = std::max(static_cast<double>(pixels.base_color[i].w), 0.0);
+  pixel.specular_weight = 1.0 + std::min(static_cast<double>(pixels.base_color[i].w), 0.0);
   pixel.albedo = base * (1.0 - metalness);
   pixel.f0 = glm::mix(glm::dvec3(0.04), base, metalness);
   return pixel;
@@ -56,9 +57,9 @@ TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_beg
     for (const Light& light : scene.lights) {
       LightIntegrals s = IntegrateLight(pixel->point, light, tolerance);
       diffuse += albedo * light.radiance * s.form_factor;
-      specular += light.radiance * (f0 * (s.specular - s.specular_grazing) + s.specular_grazing);
-      error += light.radiance *
-               (albedo * s.form_factor_error + f0 * s.specular_error + (1.0 - f0) * s.specular_grazing_error);
+      specular += pixel->specular_weight * light.radiance * (f0 * (s.specular - s.specular_grazing) + s.specular_grazing);
+      error += light.radiance * (albedo * s.form_factor_error +
+                                 pixel->specular_weight * (f0 * s.specular_error + (1.0 - f0) * s.specular_grazing_error));
     }
     band.diffuse[i - begin] = glm::vec3(diffuse);
     band.specular[i - begin] = glm::vec3(specular);

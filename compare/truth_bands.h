@@ -24,6 +24,7 @@ struct TruthBand {
 struct ShadedPixel {
   ShadingPoint point;
   glm::dvec3 albedo, f0;
+  double specular_weight;  // of the whole lobe
 };
 std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels& pixels, std::size_t i);
 

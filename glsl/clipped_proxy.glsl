@@ -8,3 +8,12 @@ float ClippedProxy(VectorFormFactor f) {
   float elevation = clamp(f.height * f.inverse, -1.0, 1.0);
   return AsFormFactor(ClippedSphere(size, elevation));
 }
+
+// Of the light itself. Where its sphere is clear of every horizon the clip leaves the height as it is; a table and a rational do not quite.
+float LambertProxy(VectorFormFactor f) {
+#if EFFECT_PROXY_HORIZON || SPHERE_TABLE || SPHERE_CHEAP
+  return ClippedProxy(f);
+#else
+  return AsFormFactor(f.height);
+#endif
+}

@@ -32,6 +32,9 @@ using glm::abs, glm::acos, glm::all, glm::any, glm::asin, glm::atan, glm::ceil, 
     glm::sqrt, glm::step, glm::tan, glm::tanh, glm::transpose;
 
 #define AREALAB_DUAL 1
+// All effects that dual files ask for are on.
+#define EFFECT_HORIZON 1
+#define EFFECT_PROXY_HORIZON 1
 #define OUT(type) type&
 #define INOUT(type) type&
 #define float double

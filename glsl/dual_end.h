@@ -3,6 +3,8 @@
 #undef INOUT
 #undef OUT
 #undef AREALAB_DUAL
+#undef EFFECT_HORIZON
+#undef EFFECT_PROXY_HORIZON
 
 }  // namespace
 }  // namespace arealab::dual

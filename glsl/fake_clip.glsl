@@ -26,6 +26,7 @@ vec2 FollowSegment(vec2 from, vec2 to, vec3 point, vec3 normal, INOUT(ClippedRec
 // What is wholly below is left with no area. From the corner highest over the horizon both ways round, each side from
 // where the last one ended.
 ClippedRectangle ClipToRectangle(vec3 point, vec3 normal, vec2 half_size) {
+#if EFFECT_HORIZON || SEGMENT_PRINTED
   vec2 p0 = vec2(normal.x < 0.0 ? -half_size.x : half_size.x, normal.y < 0.0 ? -half_size.y : half_size.y);
   vec2 p1 = vec2(-p0.x, p0.y);
   vec2 p2 = -p0;
@@ -41,5 +42,11 @@ ClippedRectangle ClipToRectangle(vec3 point, vec3 normal, vec2 half_size) {
   p = FollowSegment(p, p2, point, normal, clipped);
   p = FollowSegment(p, p1, point, normal, clipped);
   FollowSegment(p, p0, point, normal, clipped);
+#else
+  // Wholly above or wholly below.
+  ClippedRectangle clipped;
+  clipped.high = HeightOverHorizon(vec2(0.0), point, normal) > 0.0 ? half_size : vec2(0.0);
+  clipped.low = -clipped.high;
+#endif
   return clipped;
 }

@@ -134,7 +134,7 @@ constexpr double kLeastNear = 1e-5;
 
 // A Draw of gbuffer.frag, three texels of four floats.
 struct DrawEntry {
-  glm::vec4 base_color_metalness;
+  glm::vec4 base_color_metalness;  // w as in SurfacePixels::base_color
   glm::vec2 roughness;
   float normal_scale;
   float kind;
@@ -169,7 +169,7 @@ struct GBuffer::Geometry {
                               material.normal_texture};
     auto known = std::find(texture_sets.begin(), texture_sets.end(), textures);
     if (known == texture_sets.end()) known = texture_sets.insert(known, textures);
-    draws.push_back({.base_color_metalness = glm::vec4(material.base_color, material.metalness),
+    draws.push_back({.base_color_metalness = glm::vec4(material.base_color, material.metalness + (material.specular - 1.0f)),
                      .roughness = material.roughness,
                      .normal_scale = material.normal_scale,
                      .kind = kind,

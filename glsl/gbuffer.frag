@@ -4,7 +4,7 @@
 
 layout(location = 0) out vec4 out_position;    // m, world; w: what it is, see Draw
 layout(location = 1) out vec4 out_normal;      // unit shading normal; w: artist's roughness
-layout(location = 2) out vec4 out_base_color;  // linear sRGB; w: metalness
+layout(location = 2) out vec4 out_base_color;  // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
 // One draw, as gbuffer.cpp writes it.
 struct Draw {
@@ -158,5 +158,5 @@ void main() {
 
   out_position = vec4(vec3(position), draw.kind);
   out_normal = vec4(vec3(normal), clamp(rough, 0.0, 1.0));
-  out_base_color = vec4(color, clamp(metal, 0.0, 1.0));
+  out_base_color = vec4(color, clamp(metal, -1.0, 1.0));
 }

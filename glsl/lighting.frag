@@ -28,18 +28,32 @@ void main() {
     vec4 base_color = FetchBaseColor(pixel);
     vec3 to_view = normalize(ViewPosition() - position.xyz);
     // A face turned away from the viewer is black.
-    if (Lit(dot(normal.xyz, to_view) > 0.0)) {
+#if EFFECT_TURNED_AWAY
+    if (Lit(dot(normal.xyz, to_view) > 0.0))
+#endif
+    {
+#if !EFFECT_MATERIAL_COLOR
+      base_color.rgb = vec3(base_color.r);
+#endif
+#if EFFECT_SPECULAR && !EFFECT_SPECULAR_WEIGHT
+      float metalness = base_color.w;
+#else
+      float metalness = max(base_color.w, 0.0);
+#endif
       Surface surface;
       surface.position = position.xyz;
       surface.normal = normal.xyz;
       surface.roughness = normal.w;
       surface.alpha = max(normal.w * normal.w, kMinAlpha);
-      surface.diffuse_albedo = base_color.rgb * (1.0 - base_color.w);
-      surface.f0 = mix(vec3(0.04), base_color.rgb, base_color.w);
+      surface.diffuse_albedo = base_color.rgb * (1.0 - metalness);
+      surface.f0 = mix(vec3(0.04), base_color.rgb, metalness);
 #if EFFECT_MANY_LIGHTS
       for (int i = 0; i < light_count; ++i) AddLight(i, surface, to_view, diffuse, specular);
 #else
       AddLight(0, surface, to_view, diffuse, specular);
+#endif
+#if EFFECT_SPECULAR_WEIGHT
+      specular *= 1.0 + min(base_color.w, 0.0);
 #endif
     }
   }

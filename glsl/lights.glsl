@@ -33,17 +33,21 @@ Light LoadLight(int i) {
   light.half_axis_x = row4.xyz;
   light.area = row4.w;
   light.half_axis_y = LightRow(i, 5).xyz;
+#if EFFECT_LIGHT_COLOR
   light.radiance = LightRow(i, 6).xyz;
+#else
+  light.radiance = vec3(LightRow(i, 6).x);  // white: with grey materials one channel is computed
+#endif
   light.products = LightRow(i, 7).xyz;
   return light;
 }
 
 // Turns a two-sided light's frame so that its lit side faces the point, right-handed as before. False where no lit side
-// does: the point is in the plane or behind it. A sphere faces everything. A light without an area is none, and one that is
-// thinner than 1e-7 of its length neither: no float tells its sides apart.
+// does: the point is in the plane or behind it. A sphere faces everything, and so does every light where nothing lies behind one.
+// A light without an area is none, and one that is thinner than 1e-7 of its length neither: no float tells its sides apart.
 bool FaceLight(inout Light light, vec3 position) {
   if (light.area <= max(1e-7 * (light.products.x + light.products.y), 1e-30)) return false;
-#if EFFECT_RECTANGLE || EFFECT_DISK
+#if EFFECT_BEHIND && (EFFECT_RECTANGLE || EFFECT_DISK)
   if (light.shape != SHAPE_SPHERE) {
     float height = dot(light.normal, position - light.center);
 #if EFFECT_TWO_SIDED

@@ -15,7 +15,7 @@ struct SurfacePixels {
   glm::vec3 view_position{0.0f};     // m, world: the camera
   std::vector<glm::vec4> position;   // m, world; w: 0 background, 1 surface, 2 + i emitter i's lit side, −2 − i its dark side
   std::vector<glm::vec4> normal;     // unit shading normal (its plane is the horizon); w: artist's roughness
-  std::vector<glm::vec4> base_color; // linear sRGB; w: metalness
+  std::vector<glm::vec4> base_color; // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
   std::size_t size() const { return position.size(); }
   bool IsSurface(std::size_t i) const { return position[i].w == 1.0f; }

@@ -3,7 +3,7 @@
 
 layout(binding = 0) uniform sampler2D gbuffer_position;    // m, world; w: 0 background, 1 surface, else an emitter
 layout(binding = 1) uniform sampler2D gbuffer_normal;      // unit; w: artist's roughness
-layout(binding = 2) uniform sampler2D gbuffer_base_color;  // linear sRGB; w: metalness
+layout(binding = 2) uniform sampler2D gbuffer_base_color;  // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
 #define MAX_LIGHTS 256
 #define LIGHT_ROWS 8

@@ -63,7 +63,7 @@ struct Renderer::Impl {
   glm::ivec2 size{0};
   Scene scene;  // drawn last, without its meshes
   int light_count = 0;
-  std::vector<std::pair<std::string, int>> effects;
+  std::vector<Effect> effects;
   GlObject framebuffer, diffuse, specular;
   std::unordered_map<std::string, std::unique_ptr<Program>> programs;  // by their whole text
   std::map<std::string, Table> tables;                                 // by their name in the library
@@ -108,10 +108,10 @@ GLuint Renderer::Impl::LoadTable(const Variant& variant, const arealab::Table& t
 }
 
 Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision precision) {
-  if (const std::optional<std::string> why = WhyUnsupported(variant, scene)) {
+  if (const std::optional<std::string> why = WhyUnsupported(variant, scene, effects)) {
     throw InputError(fmt::format("{}; expected a variant that supports the scene", *why));
   }
-  const ExpandedSource source = Expand(library, "lighting.frag", variant, effects, precision, scene.brdf);
+  const ExpandedSource source = Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), precision, scene.brdf);
   std::unique_ptr<Program>& program = programs[source.text];
   if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
   Pass pass{program.get(), {}};
@@ -273,7 +273,7 @@ void Renderer::Draw(const Variant& variant, Precision precision, const std::map<
 
 void Renderer::DrawThrough() {
   if (!impl_->through) {
-    const ExpandedSource source = Expand(impl_->library, "through.frag", {}, impl_->effects, Precision::kFloat);
+    const ExpandedSource source = Expand(impl_->library, "through.frag", {}, Defines(impl_->effects), Precision::kFloat);
     impl_->through = std::make_unique<Program>(impl_->gl, impl_->fullscreen, source);
   }
   impl_->DrawPass({impl_->through.get(), {}});

@@ -79,6 +79,15 @@ CapOverlap IntersectCaps(Cap cap0, Cap cap1) {
   return overlap;
 }
 
+// The same of a cap that lies wholly above the horizon of `up`, or wholly below.
+CapOverlap WholeCap(Cap cap, vec3 up) {
+  float above = dot(cap.axis, up) > 0.0 ? 1.0 : 0.0;
+  CapOverlap overlap;
+  overlap.area = above * 2.0 * kPi * cap.versine;
+  overlap.moment = cap.axis * (above * kPi * max(cap.versine * (2.0 - cap.versine), 0.0));
+  return overlap;
+}
+
 // The share of the smaller of two disks, or caps, that the other covers, from their radii and the distance of their
 // centres: a smoothstep between touching and containing [Oat 2006, "Smoothstep saves the day"; Drobot 2014, eq. 1.21
 // with its brackets corrected].
@@ -110,11 +119,13 @@ vec3 AlongArc(vec3 a, vec3 b, float versine, float fraction) {
 float SphereFormFactor(float cos_center, float versine) {
   float cos_radius = 1.0 - versine;
   float sin2 = versine * (2.0 - versine);
-  float w2 = sin2 - cos_center * cos_center;
   float lit = max(cos_center, 0.0) * sin2;  // wholly above the horizon, or wholly below
+#if EFFECT_HORIZON
+  float w2 = sin2 - cos_center * cos_center;
   if (w2 > 0.0) {
     float w = sqrt(w2);
     lit = (Arctangent(w, cos_radius) + cos_center * sin2 * Arctangent(w, -cos_center * cos_radius) - cos_radius * w) / kPi;
   }
+#endif
   return clamp(lit, 0.0, 1.0);
 }

@@ -44,24 +44,9 @@ std::string Upper(std::string text) {
   return text;
 }
 
-std::string Lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 std::vector<std::string> ShapeNames(const std::vector<LightShape>& shapes) {
   std::vector<std::string> names;
   for (const LightShape shape : shapes) names.emplace_back(Name(shape));
-  return names;
-}
-
-// "two_sided" for each EFFECT_TWO_SIDED that the host emits.
-std::vector<std::string> KnownEffects() {
-  constexpr std::string_view kPrefix = "EFFECT_";
-  std::vector<std::string> names;
-  for (const auto& [define, value] : SceneEffects(Scene{})) {
-    names.push_back(Lower(define.substr(kPrefix.size())));
-  }
   return names;
 }
 
@@ -248,7 +233,7 @@ class HeaderReader {
     technique.diffuse = std::find(lobes.begin(), lobes.end(), "diffuse") != lobes.end();
     technique.specular = std::find(lobes.begin(), lobes.end(), "specular") != lobes.end();
     technique.brdfs = NeededList(root, "brdfs", BrdfNames());
-    technique.effects = NameList(root, "effects", KnownEffects());
+    technique.effects = NameList(root, "effects", EffectNames());
     technique.exact = NameList(root, "exact", kClaims);
     if (const toml::node* yardstick = root.get("yardstick")) {
       if (!yardstick->is_boolean()) Fail(LineOf(*yardstick), "yardstick is neither true nor false", "one of them");

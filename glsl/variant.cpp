@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "glsl/effects.h"
 #include "glsl/nearest.h"
@@ -14,6 +15,7 @@ namespace arealab {
 namespace {
 
 constexpr std::string_view kPublished = "published";
+constexpr std::string_view kEffectPrefix = "effect_";
 
 std::vector<std::string> Names(const auto& items) {
   std::vector<std::string> names;
@@ -35,6 +37,18 @@ std::string_view TakeUntil(std::string_view& text, std::string_view stops) {
   return head;
 }
 
+// Applies one "effect_horizon=1".
+void ForceEffect(const std::string& effect, const std::string& choice, std::string_view whole, Variant& variant) {
+  const std::vector<std::string> known = EffectNames();
+  if (std::find(known.begin(), known.end(), effect) == known.end()) {
+    throw InputError(fmt::format("variant \"{}\": unknown effect \"{}\"; expected {}", whole, effect, ExpectedNames(effect, known)));
+  }
+  if (choice != "0" && choice != "1") {
+    throw InputError(fmt::format("variant \"{}\": {}{}={}; expected 0 or 1", whole, kEffectPrefix, effect, choice));
+  }
+  variant.effects[effect] = choice == "1";
+}
+
 // Applies one "clip=switch".
 void ParseAssignment(std::string_view assignment, std::string_view whole, Variant& variant,
                      std::map<std::string, std::string>& given) {
@@ -46,6 +60,15 @@ void ParseAssignment(std::string_view assignment, std::string_view whole, Varian
   }
   const std::string name(assignment.substr(0, equals));
   const std::string choice(assignment.substr(equals + 1));
+  if (name == "effects") {
+    if (choice != "all") throw InputError(fmt::format("variant \"{}\": effects={}; expected effects=all", whole, choice));
+    variant = WithAllEffects(std::move(variant));
+    return;
+  }
+  if (name.starts_with(kEffectPrefix)) {
+    ForceEffect(name.substr(kEffectPrefix.size()), choice, whole, variant);
+    return;
+  }
   const Option* option = FindByName(technique.options, name);
   if (!option && technique.options.empty()) {
     throw InputError(fmt::format("variant \"{}\": unknown option \"{}\"; expected none, {} has no options",
@@ -102,13 +125,12 @@ std::vector<std::pair<std::string, std::string>> NeedsOf(const Variant& variant,
 // What a scene may call for of a technique beside shapes and lobes, and how to say that it lacks it. (The loop over many
 // lights is the lighting pass's own.)
 struct Need {
-  std::string_view define;
-  std::string_view effect;
+  const char* effect;
   const char* what;
 };
 constexpr Need kNeeds[] = {
-    {"EFFECT_TWO_SIDED", "two_sided", "two-sided lights; the scene has one"},
-    {"EFFECT_FRESNEL", "fresnel", "a Fresnel term; the scene's materials reflect less than all light"},
+    {"two_sided", "two-sided lights; the scene has one"},
+    {"fresnel", "a Fresnel term; the scene's materials reflect less than all light"},
 };
 
 }  // namespace
@@ -119,6 +141,8 @@ std::string Variant::Name() const {
     const std::string& choice = options.at(option.name);
     if (choice != option.choices.front().name) name += fmt::format("+{}={}", option.name, choice);
   }
+  if (!effects.empty() && effects == WithAllEffects(*this).effects) return name + "+effects=all";
+  for (const auto& [effect, on] : effects) name += fmt::format("+{}{}={}", kEffectPrefix, effect, on ? 1 : 0);
   return name;
 }
 
@@ -130,12 +154,24 @@ std::string Variant::ShortName() const {
 }
 
 bool Variant::operator==(const Variant& other) const {
-  return technique->name == other.technique->name && options == other.options;
+  return technique->name == other.technique->name && options == other.options && effects == other.effects;
 }
 
 Variant DefaultVariant(const Technique& technique) {
   Variant variant{&technique, {}};
   for (const Option& option : technique.options) variant.options[option.name] = option.choices.front().name;
+  return variant;
+}
+
+Variant WithAllEffects(Variant variant) {
+  const Technique& technique = *variant.technique;
+  for (const std::string& effect : EffectNames()) variant.effects[effect] = true;
+  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
+    if (std::ranges::find(technique.shapes, shape) == technique.shapes.end()) variant.effects.erase(Name(shape));
+  }
+  for (const Need& need : kNeeds) {
+    if (std::ranges::find(technique.effects, need.effect) == technique.effects.end()) variant.effects.erase(need.effect);
+  }
   return variant;
 }
 
@@ -246,7 +282,10 @@ std::optional<std::string> WhyInconsistent(const Variant& variant) {
   return std::nullopt;
 }
 
-std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene) {
+namespace {
+
+std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene,
+                                          const std::function<bool(const char*)>& calls_for) {
   const std::string brdf = Name(scene.brdf);
   const std::vector<std::string>& brdfs = variant.technique->brdfs;
   if (std::find(brdfs.begin(), brdfs.end(), brdf) == brdfs.end()) {
@@ -276,15 +315,24 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
     }
   }
   const Technique& technique = *variant.technique;
-  for (const auto& [define, on] : SceneEffects(scene)) {
-    if (on == 0) continue;
-    const auto need = std::ranges::find(kNeeds, define, &Need::define);
-    if (need == std::end(kNeeds)) continue;
-    if (std::ranges::find(technique.effects, need->effect) == technique.effects.end()) {
-      return fmt::format("{} does not take {}", technique.name, need->what);
+  for (const Need& need : kNeeds) {
+    if (std::ranges::find(technique.effects, need.effect) != technique.effects.end()) continue;
+    const auto forced = variant.effects.find(need.effect);
+    if ((forced != variant.effects.end() && forced->second) || calls_for(need.effect)) {
+      return fmt::format("{} does not take {}", technique.name, need.what);
     }
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene) {
+  return WhyUnsupported(variant, scene, [&](const char* effect) { return SceneEffect(scene, effect).on; });
+}
+
+std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene, const std::vector<Effect>& effects) {
+  return WhyUnsupported(variant, scene, [&](const char* effect) { return std::ranges::find(effects, effect, &Effect::name)->on; });
 }
 
 }  // namespace arealab

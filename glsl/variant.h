@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "glsl/effects.h"
 #include "glsl/technique.h"
 
 namespace arealab {
@@ -14,8 +15,10 @@ namespace arealab {
 struct Variant {
   const Technique* technique = nullptr;        // into the registry, which outlives it
   std::map<std::string, std::string> options;  // every option of the technique → choice
+  std::map<std::string, bool> effects = {};    // forced on or off, by name; the scene decides the others
 
-  // Canonical: "ltc", "ltc+clip=switch+edge=rational"; keys in header order, defaults left out.
+  // Canonical: "ltc", "ltc+clip=switch+edge=rational"; keys in header order, defaults left out. Forced effects last:
+  // "ltc+effect_horizon=1", "ltc+effects=all".
   std::string Name() const;
   // "ltc@published" where these are its author's choices and differ from the defaults, else Name().
   std::string ShortName() const;
@@ -28,6 +31,9 @@ Variant PublishedVariant(const Technique& technique);
 // The variant with no shortcut of computation, where its technique has any: [ideal] of its header, as far as the choices go together.
 // Computed in double, it is the mathematics that the variant's own numbers stand for.
 Variant IdealVariant(const Variant& variant);
+
+// The variant with every effect forced on that its technique takes; shapes are left to the scene where it does not do them.
+Variant WithAllEffects(Variant variant);
 
 // Reads "ltc", "ltc@published", "ltc+clip=switch", "ltc@published+edge=acos". Throws InputError that lists what exists.
 Variant ParseVariant(const std::vector<Technique>& techniques, std::string_view name);
@@ -48,5 +54,8 @@ std::optional<std::string> WhyInconsistent(const Variant& variant);
 
 // A sentence that says why the variant cannot shade the scene, or nothing.
 std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene);
+
+// The same where the scene's effects are known already; then its meshes are not looked at.
+std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene, const std::vector<Effect>& effects);
 
 }  // namespace arealab

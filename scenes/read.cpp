@@ -390,7 +390,7 @@ class SceneReader {
   }
 
   void ReadMaterial(const Fields& fields) {
-    fields.Allow({"name", "base_color", "roughness", "metalness", "base_color_texture",
+    fields.Allow({"name", "base_color", "roughness", "metalness", "specular", "base_color_texture",
                   "metallic_roughness_texture", "normal_texture", "normal_scale"});
     fields.Require("name", "a name that surfaces refer to");
     Material material;
@@ -400,10 +400,14 @@ class SceneReader {
     material.roughness =
         fields.NumberOrNumbers<2>("roughness", kUnitInterval, glm::dvec2(material.roughness));
     material.metalness = static_cast<float>(fields.Number("metalness", kUnitInterval, 0.0));
+    material.specular = static_cast<float>(fields.Number("specular", kUnitInterval, 1.0));
     material.base_color_texture = Texture(fields, "base_color_texture", ImageUse::kColor);
     material.metallic_roughness_texture = Texture(fields, "metallic_roughness_texture", ImageUse::kData);
     material.normal_texture = Texture(fields, "normal_texture", ImageUse::kData);
     material.normal_scale = static_cast<float>(fields.Number("normal_scale", kNormalScale, 1.0));
+    if (material.specular != 1.0f && (material.metalness > 0.0f || material.metallic_roughness_texture)) {
+      fields.Fail(*fields.Find("specular"), "specular weighs a non-metal's lobe; expected no metalness beside it");
+    }
     scene_.materials.push_back(std::move(material));
   }
 

@@ -60,6 +60,7 @@ struct Material {
   glm::vec2 roughness{
       0.5f};  // artist's roughness in [0, 1] at texture coordinate u = 0 and u = 1, linear between
   float metalness = 0.0f;
+  float specular = 1.0f;  // weight of a non-metal's specular lobe, [0, 1]; 1 where metalness > 0 [KHR_materials_specular]
   float normal_scale = 1.0f;
   std::shared_ptr<const Image> base_color_texture;          // multiplies base_color
   std::shared_ptr<const Image> metallic_roughness_texture;  // glTF: green × roughness, blue × metalness

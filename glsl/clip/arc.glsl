@@ -73,7 +73,11 @@ float ClippedLambert(RectangleView view) {
   float x = view.in_plane.x + 0.5 * side_x;
   float y = view.in_plane.y + 0.5 * side_y;
   float z = view.in_plane.z;
+#if EFFECT_HORIZON
   HorizonShares k = CutAtHorizon(n.x * x + n.y * y + n.z * z, n.x * side_x, n.y * side_y);
+#else
+  HorizonShares k = HorizonShares(1.0, 1.0, 1.0, 1.0);  // wholly above, or wholly below: then the sum is negative
+#endif
 
   float x0 = x - k.k0 * side_x;
   float y0 = y - k.k1 * side_y;
@@ -100,9 +104,13 @@ float ClippedLambert(RectangleView view) {
   float c_a = side_x * (n.y * z - n.z * y);
   float c_b = side_y * (n.z * x - n.x * z);
   float a_b = side_x * side_y * n.z;
+#if EFFECT_HORIZON
   // v4 × v0 from the shares.
   float area = abs((k.k2 - k.k0) * c_a + (k.k3 - k.k1) * c_b + (k.k1 * k.k2 - k.k0 * k.k3) * a_b);
   float closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);
+#else
+  float closing = 0.0;
+#endif
   float sum = t0 * (c_a + k.k1 * a_b) + t1 * c_b - t2 * c_a - t3 * (c_b - k.k2 * a_b);
   return AsFormFactor(sign_a * sign_b * (-0.125 / kPi) * sum + closing * (0.5 / kPi));
 }

@@ -123,13 +123,22 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   float form_factor;
   vec3 transformed;
-  if (light.shape == SHAPE_RECTANGLE) {
+#if EFFECT_RECTANGLE
+#if EFFECT_DISK || EFFECT_SPHERE
+  if (light.shape == SHAPE_RECTANGLE)
+#endif
+  {
     RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
-    form_factor = ClippedProxy(LambertVector(view));
+    form_factor = LambertProxy(LambertVector(view));
     VectorFormFactor whole = ParallelogramVector(LtcTransform(cell.m, view.center), LtcTransform(cell.m, view.half_a), LtcTransform(cell.m, view.half_b));
     transformed = vec3(whole.f.x, whole.f.y, ClippedProxy(whole));
-  } else {
-    RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
   }
+#if EFFECT_DISK || EFFECT_SPHERE
+  else
+#endif
+#endif
+#if EFFECT_DISK || EFFECT_SPHERE
+  RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
+#endif
   return LtcRadiance(surface, light, frame, cell, form_factor, transformed);
 }

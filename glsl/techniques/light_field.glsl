@@ -62,13 +62,19 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   float reach = abs(view.half_a.z) + abs(view.half_b.z);
   if (WhollyBelow(view.center.z < -reach)) return result;
   vec3 field;  // vector irradiance over π·radiance, world
-  if (WhollyAbove(view.center.z > reach)) {
+#if EFFECT_HORIZON
+  if (WhollyAbove(view.center.z > reach))
+#endif
+  {
     vec3 f = LambertVector(view).f;
     field = light.axis_x * f.x + light.axis_y * f.y + light.normal * f.z;
-  } else {
+  }
+#if EFFECT_HORIZON
+  else {
     vec3 f = ClippedVector(view.center, view.half_a, view.half_b);
     field = frame.tangent * f.x + frame.bitangent * f.y + frame.normal * f.z;
   }
+#endif
 
   float size2 = dot(field, field);
   if (!Lit(size2 >= 1e-36)) return result;  // (1e-9 of the sky)²: no direction is left in float

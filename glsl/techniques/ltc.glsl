@@ -131,12 +131,21 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   float form_factor;
   vec3 transformed;
-  if (light.shape == SHAPE_RECTANGLE) {
+#if EFFECT_RECTANGLE
+#if EFFECT_DISK || EFFECT_SPHERE
+  if (light.shape == SHAPE_RECTANGLE)
+#endif
+  {
     RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
     form_factor = ClippedLambert(view);
     transformed = LobeVector(cell.m, view);
-  } else {
-    RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
   }
+#if EFFECT_DISK || EFFECT_SPHERE
+  else
+#endif
+#endif
+#if EFFECT_DISK || EFFECT_SPHERE
+  RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
+#endif
   return LtcRadiance(surface, light, frame, cell, form_factor, transformed);
 }

@@ -77,24 +77,29 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   lobe.versine = max(EnergyConeVersine(surface.alpha, n_dot_v), 1e-12);  // below it float's directions are all alike
 
   // Areas over 2π: of the light's part in the aperture, of the aperture's part in the light's, of its part in the lobe.
-#if OVERLAP_EXACT
+#if !EFFECT_PROXY_HORIZON
+  CapOverlap open = WholeCap(source, aperture.axis);
+  float open_area = open.area / (2.0 * kPi);
+#elif OVERLAP_EXACT
   CapOverlap open = IntersectCaps(aperture, source);
   float open_area = open.area / (2.0 * kPi);
+#else
+  float open_area = min(aperture.versine, source.versine) *
+                    SmoothstepOverlap(AngleFromVersine(aperture.versine), AngleFromVersine(source.versine),
+                                      AngleFromVersine(VersineBetween(aperture.axis, source.axis)));
+#endif
+#if OVERLAP_EXACT
   float lobe_area = IntersectCaps(lobe, source).area / (2.0 * kPi);
 #else
-  float source_radius = AngleFromVersine(source.versine);
-  float open_area = min(aperture.versine, source.versine) *
-                    SmoothstepOverlap(AngleFromVersine(aperture.versine), source_radius,
-                                      AngleFromVersine(VersineBetween(aperture.axis, source.axis)));
   float lobe_area = min(lobe.versine, source.versine) *
-                    SmoothstepOverlap(AngleFromVersine(lobe.versine), source_radius,
+                    SmoothstepOverlap(AngleFromVersine(lobe.versine), AngleFromVersine(source.versine),
                                       AngleFromVersine(VersineBetween(lobe.axis, source.axis)));
 #endif
 
 #if CENTROID_AVERAGE
   vec3 sum = aperture.axis + source.axis;
   float cos_centroid = max(dot(surface.normal, sum) * inversesqrt(max(dot(sum, sum), 1e-20)), 0.0);
-#elif OVERLAP_EXACT
+#elif OVERLAP_EXACT || !EFFECT_PROXY_HORIZON
   float cos_centroid = max(dot(surface.normal, open.moment), 0.0) / max(open.area, 1e-30);
 #else
   CapOverlap open = IntersectCaps(aperture, source);

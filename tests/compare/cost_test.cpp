@@ -106,16 +106,17 @@ TEST(Cost, WhatIsMissingIsSaidInALine) {
 TEST(Cost, ASceneOfEffectsHasThemAndNoOthers) {
   const auto on = [](const Scene& scene) {
     std::vector<std::string> names;
-    for (const auto& [name, value] : SceneEffects(scene)) {
-      if (value != 0) names.push_back(name);
+    for (const char* name : {"rectangle", "disk", "sphere", "two_sided", "diffuse", "specular", "fresnel", "many_lights"}) {
+      if (SceneEffect(scene, name).on) names.push_back(name);
     }
+    for (const char* name : {"horizon", "proxy_horizon", "behind", "turned_away"}) EXPECT_TRUE(SceneEffect(scene, name).on) << name;
     return names;
   };
   EXPECT_THAT(on(SceneOfEffects(kUsual)),
-              testing::UnorderedElementsAre("EFFECT_RECTANGLE", "EFFECT_DIFFUSE", "EFFECT_SPECULAR", "EFFECT_FRESNEL"));
+              testing::UnorderedElementsAre("rectangle", "diffuse", "specular", "fresnel"));
   EXPECT_THAT(on(SceneOfEffects({"disk", "two_sided", "specular", "many_lights", "fresnel"})),
-              testing::UnorderedElementsAre("EFFECT_DISK", "EFFECT_TWO_SIDED", "EFFECT_SPECULAR", "EFFECT_FRESNEL",
-                                            "EFFECT_MANY_LIGHTS"));
+              testing::UnorderedElementsAre("disk", "two_sided", "specular", "fresnel",
+                                            "many_lights"));
   EXPECT_THAT([] { SceneOfEffects({"rectangle", "glow"}); }, ThrowsMessage<InputError>(HasSubstr("no effect \"glow\"")));
   EXPECT_THAT([] { SceneOfEffects({"rectangle", "sphere", "specular", "diffuse", "fresnel"}); },
               ThrowsMessage<InputError>(HasSubstr("without many_lights")));

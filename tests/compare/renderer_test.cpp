@@ -776,40 +776,8 @@ TEST_F(Probing, EditedTextIsUsedAtTheNextShade) {
   }
 }
 
-// --- Effects, the light block, memory
+// --- The light block, memory
 // -------------------------------------------------------------------------------------
-
-std::vector<std::string> On(const Scene& scene) {
-  std::vector<std::string> on;
-  for (const auto& [name, value] : SceneEffects(scene)) {
-    EXPECT_TRUE(value == 0 || value == 1);
-    if (value == 1) on.push_back(name.substr(7));
-  }
-  return on;
-}
-
-TEST(Effects, FollowTheScene) {
-  using testing::ElementsAre;
-  Scene scene = MakeScene(LightShape::kRectangle);
-  EXPECT_EQ(SceneEffects(scene).size(), 8u);
-  EXPECT_THAT(On(scene), ElementsAre("RECTANGLE", "DIFFUSE", "SPECULAR", "FRESNEL"));
-  for (Material& material : scene.materials) material.metalness = 1.0f;
-  EXPECT_THAT(On(scene), ElementsAre("RECTANGLE", "SPECULAR", "FRESNEL"));
-  for (Material& material : scene.materials) material.base_color = glm::vec3(1.0f);
-  EXPECT_THAT(On(scene), ElementsAre("RECTANGLE", "SPECULAR"));
-  scene.materials[1].metallic_roughness_texture = std::make_shared<Image>(Image{1, 1, {glm::vec4(0.5f)}});
-  EXPECT_THAT(On(scene), ElementsAre("RECTANGLE", "DIFFUSE", "SPECULAR", "FRESNEL"));
-  scene.lights.push_back(MakeLight(LightShape::kDisk));
-  scene.lights.push_back(MakeLight(LightShape::kSphere));
-  scene.lights[2].two_sided = true;  // a sphere has one side
-  EXPECT_THAT(On(scene),
-              ElementsAre("RECTANGLE", "DISK", "SPHERE", "DIFFUSE", "SPECULAR", "FRESNEL", "MANY_LIGHTS"));
-  scene.lights[1].two_sided = true;
-  EXPECT_THAT(On(scene), ElementsAre("RECTANGLE", "DISK", "SPHERE", "TWO_SIDED", "DIFFUSE", "SPECULAR",
-                                     "FRESNEL", "MANY_LIGHTS"));
-  scene.lights[1].radiance = scene.lights[2].radiance = glm::dvec3(0.0);  // what does not emit costs nothing
-  EXPECT_THAT(On(scene), ElementsAre("RECTANGLE", "DIFFUSE", "SPECULAR", "FRESNEL"));
-}
 
 TEST_F(Rendering, PureMetalHasNoDiffuseAndTheSameSpecular) {
   Renderer renderer(context_->gl(), library_);

@@ -27,7 +27,7 @@ class ShaderLog : public testing::TestWithParam<Precision> {
     const Variant variant = ParseVariant(techniques, "point");
     try {
       const Program program(context_->gl(), Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat),
-                            Expand(library, "lighting.frag", variant, SceneEffects(Scene{}), GetParam()));
+                            Expand(library, "lighting.frag", variant, Defines(SceneEffects(Scene{})), GetParam()));
     } catch (const InputError& error) {
       const std::string message = error.what();
       EXPECT_THAT(message, StartsWith(path));

@@ -15,11 +15,9 @@
 namespace arealab {
 namespace {
 
-using Effects = std::vector<std::pair<std::string, int>>;
-
 // Everything on but the shapes that the technique does not do.
-Effects AllOn(const Technique& technique) {
-  Effects effects = SceneEffects(Scene{});
+EffectDefines AllOn(const Technique& technique) {
+  EffectDefines effects = Defines(SceneEffects(Scene{}));
   const auto does = [&](LightShape shape) {
     return std::count(technique.shapes.begin(), technique.shapes.end(), shape) > 0;
   };
@@ -48,11 +46,11 @@ TEST_P(Variants, EverySupportedOneCompiles) {
   int compiled = 0;
   const std::vector<Variant> forms = DefaultVariants(techniques);
   for (const Variant& variant : variants) {
-    std::set<Effects> effect_sets{AllOn(*variant.technique)};
+    std::set<EffectDefines> effect_sets{AllOn(*variant.technique)};
     // Options do not look at effects: the scenes' own sets with each technique's default and published form.
     const bool is_form = std::find(forms.begin(), forms.end(), variant) != forms.end();
     for (const Scene& scene : scenes) {
-      if (is_form && !WhyUnsupported(variant, scene)) effect_sets.insert(SceneEffects(scene));
+      if (is_form && !WhyUnsupported(variant, scene)) effect_sets.insert(Defines(SceneEffects(scene)));
     }
     // Nor do they look at the BRDF: the other BRDFs with the two forms.
     for (const Brdf brdf : kBrdfs) {
@@ -66,7 +64,7 @@ TEST_P(Variants, EverySupportedOneCompiles) {
         ADD_FAILURE() << error.what();
       }
     }
-    for (const Effects& effects : effect_sets) {
+    for (const EffectDefines& effects : effect_sets) {
       std::string on;
       for (const auto& [name, value] : effects) on += value ? " " + name : "";
       SCOPED_TRACE(variant.Name() + " with" + on);

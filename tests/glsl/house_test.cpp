@@ -169,7 +169,7 @@ std::string Upper(std::string text) {
 
 std::set<std::string> EmittedEffects() {
   std::set<std::string> names;
-  for (const auto& [name, value] : SceneEffects(Scene{})) names.insert(name);
+  for (const Effect& effect : SceneEffects(Scene{})) names.insert(effect.Define());
   return names;
 }
 

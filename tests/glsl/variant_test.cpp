@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scenes/error.h"
+#include "scenes/shapes.h"
 
 namespace arealab {
 namespace {
@@ -144,9 +145,25 @@ TEST(Variant, WrongNamesAreRefusedWithWhatExists) {
             "TECHNIQUE[@published][+OPTION=CHOICE]…");
 }
 
-// Lights a perfect mirror, which has no Fresnel term.
+TEST(Variant, EffectsAreForcedByName) {
+  const Variant variant = Parse("same+effect_horizon=1+effect_disk=0");
+  EXPECT_EQ(variant.effects, (std::map<std::string, bool>{{"disk", false}, {"horizon", true}}));
+  EXPECT_EQ(variant.Name(), "same+effect_disk=0+effect_horizon=1");
+  EXPECT_EQ(Parse(variant.Name()), variant);
+  const Variant all = Parse("same+effects=all");
+  EXPECT_EQ(all.Name(), "same+effects=all");
+  EXPECT_EQ(all.effects.count("rectangle"), 0u);  // it does disks and spheres
+  EXPECT_TRUE(all.effects.at("sphere"));
+  EXPECT_NE(all, Parse("same"));
+  EXPECT_THAT(ErrorOf("same+effect_horizom=1"), testing::HasSubstr("unknown effect \"horizom\""));
+  EXPECT_EQ(ErrorOf("same+effect_horizon=2"), "variant \"same+effect_horizon=2\": effect_horizon=2; expected 0 or 1");
+  EXPECT_EQ(ErrorOf("same+effects=none"), "variant \"same+effects=none\": effects=none; expected effects=all");
+}
+
+// Lights a perfect mirror, which has no Fresnel term and lies behind the lights.
 Scene SceneWith(LightShape shape, const std::string& name) {
   Scene scene;
+  scene.meshes.push_back(MakePlane({2.0, 2.0}, {{0.0, 0.0, -1.0}}));
   scene.materials.resize(1);
   scene.materials[0].base_color = glm::vec3(1.0f);
   scene.materials[0].metalness = 1.0f;

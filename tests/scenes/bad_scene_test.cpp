@@ -105,7 +105,7 @@ std::vector<BadScene> BadScenes() {
        "unknown key 'roughnes' in [[material]] 'grey'; expected 'roughness'"},
       {"MaterialStrangeKey", Material("name = \"grey\"\nrefraction = 0.5 #HERE\n"),
        "unknown key 'refraction' in [[material]] 'grey'; expected one of: name, base_color, roughness, "
-       "metalness, base_color_texture, metallic_roughness_texture, normal_texture, normal_scale"},
+       "metalness, specular, base_color_texture, metallic_roughness_texture, normal_texture, normal_scale"},
       {"MaterialIsTable", kCamera + kLight + kSurface + "[material] #HERE\nname = \"grey\"\n",
        "'material' in the scene is a table; expected tables, each headed [[material]]"},
       {"RoughnessAboveOne", Material("name = \"grey\"\nroughness = 1.5 #HERE\n"),
@@ -122,6 +122,8 @@ std::vector<BadScene> BadScenes() {
        "'metalness' in [[material]] 'grey' is 1.01; expected a number from 0 to 1"},
       {"MetalnessIsBool", Material("name = \"grey\"\nmetalness = true #HERE\n"),
        "'metalness' in [[material]] 'grey' is a boolean; expected a number from 0 to 1"},
+      {"SpecularOfAMetal", Material("name = \"grey\"\nmetalness = 0.5\nspecular = 0.5 #HERE\n"),
+       "specular weighs a non-metal's lobe; expected no metalness beside it"},
       {"BaseColorAboveOne", Material("name = \"grey\"\nbase_color = [0.5, 1.2, 0.5] #HERE\n"),
        "'base_color[1]' in [[material]] 'grey' is 1.2; expected a number from 0 to 1"},
       {"BaseColorNegative", Material("name = \"grey\"\nbase_color = -0.1 #HERE\n"),
