@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   arealab::AddSweep(app, status, CommandLine(argc, argv));
   arealab::AddView(app, status);
   arealab::AddStress(app, status);
+  arealab::AddExplain(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {
