@@ -45,5 +45,6 @@ void AddSweep(CLI::App& app, int& status, const std::string& command_line);
 void AddView(CLI::App& app, int& status);
 void AddStress(CLI::App& app, int& status);
 void AddExplain(CLI::App& app, int& status);
+void AddExport(CLI::App& app, int& status);
 
 }  // namespace arealab

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   arealab::AddView(app, status);
   arealab::AddStress(app, status);
   arealab::AddExplain(app, status);
+  arealab::AddExport(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

@@ -64,8 +64,10 @@ bool IsGrey(const glm::dvec3& color) { return color.x == color.y && color.y == c
 // Reasons for which an effect of the geometry is on; empty ones are proven off.
 struct GeometryNeeds {
   std::optional<std::string> two_sided, behind, turned_away, horizon, proxy_horizon;
+  bool any_two_sided = false, any_flat = false;  // among the lights: without them two_sided and behind are off anyway
 
-  bool All() const { return two_sided && behind && turned_away && horizon && proxy_horizon; }
+  // Whether nothing is left to find.
+  bool All() const { return (two_sided || !any_two_sided) && (behind || !any_flat) && turned_away && horizon && proxy_horizon; }
 };
 
 // The corners of a triangle, its normals anywhere between the corners' own.
@@ -223,6 +225,10 @@ class Analysis {
 
   GeometryNeeds LookAtGeometry() const {
     GeometryNeeds needs;
+    for (const Light& light : lights_) {
+      needs.any_flat = needs.any_flat || IsFlat(light);
+      needs.any_two_sided = needs.any_two_sided || (IsFlat(light) && light.two_sided);
+    }
     for (const Mesh& mesh : scene_.meshes) {
       const Material& material = scene_.materials.at(static_cast<std::size_t>(mesh.material));
       for (std::size_t i = 0; i + 2 < mesh.indices.size() && !needs.All(); i += 3) {

@@ -17,9 +17,6 @@ namespace arealab {
 
 namespace {
 
-// The lines that the host writes have no author's file.
-constexpr std::string_view kHostFile = "the host's prologue";
-
 std::string Upper(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return text;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,9 @@
 namespace arealab {
 
 enum class Precision { kFloat, kDouble };  // kDouble: the same text in fp64 (double, dvec, literals with lf)
+
+// The file of lines that the host writes: they have no author.
+inline constexpr std::string_view kHostFile = "the host's prologue";
 
 struct ExpandedSource {
   struct Origin {

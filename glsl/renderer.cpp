@@ -223,9 +223,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   impl_->scene.lights = scene.lights;
   impl_->scene.materials = scene.materials;
   impl_->effects = SceneEffects(scene);
-  for (auto& [name, value] : impl_->effects) {
-    if (effects_off.contains(name)) value = 0;
-  }
+  for (Effect& effect : impl_->effects) effect.on = effect.on && !effects_off.contains(effect.name);
   impl_->passes.clear();
   impl_->gl.NamedBufferSubData(impl_->lights.id(), 0,
                                static_cast<GLsizeiptr>(rows.size() * sizeof(glm::vec4)), rows.data());

@@ -403,15 +403,15 @@ void ViewTab(PanelContext& context, PanelRequests& requests) {
 
   Heading("Effects");
   Note("What the scene calls for. Switch one off to see the picture and the cost without it.");
-  for (const auto& [name, value] : SceneEffects(session.scene)) {
-    if (value == 0) continue;
-    const bool shape = name == "EFFECT_RECTANGLE" || name == "EFFECT_DISK" || name == "EFFECT_SPHERE";
+  for (const Effect& effect : SceneEffects(session.scene)) {
+    const std::string& name = effect.name;
+    const bool shape = name == "rectangle" || name == "disk" || name == "sphere";
+    if (!effect.on || shape) continue;
     bool on = !session.effects_off.contains(name);
-    if (shape) continue;
     if (ImGui::Checkbox(EffectLabel(name).c_str(), &on)) {
       on ? void(session.effects_off.erase(name)) : void(session.effects_off.insert(name));
     }
-    Tip(EffectReason(name));
+    Tip(effect.reason + ".");
   }
 
   Heading("Files");

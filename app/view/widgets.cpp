@@ -191,19 +191,10 @@ void DrawLegend(ImDrawList& draw, const Session& session, ImVec2 corner, float u
 }
 
 std::string EffectLabel(const std::string& effect) {
-  std::string label = effect.substr(std::string("EFFECT_").size());
-  for (char& c : label) c = c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string label = effect;
+  std::replace(label.begin(), label.end(), '_', ' ');
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
   return label;
-}
-
-std::string EffectReason(const std::string& effect) {
-  if (effect == "EFFECT_TWO_SIDED") return "Some light is lit on both sides.";
-  if (effect == "EFFECT_DIFFUSE") return "Some material is not pure metal.";
-  if (effect == "EFFECT_SPECULAR") return "Every material reflects.";
-  if (effect == "EFFECT_FRESNEL") return "Some reflectance at normal incidence is below 1.";
-  if (effect == "EFFECT_MANY_LIGHTS") return "More than one light emits; without it the first alone is shaded.";
-  return "The scene calls for it.";
 }
 
 glm::dvec3 PlanckianColor(double kelvin) {

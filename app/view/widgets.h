@@ -30,8 +30,8 @@ void Segments(const char* id, const char* const* names, int count, int& chosen, 
 // The colours of a map from end to end with their values, its bottom right corner at `corner`.
 void DrawLegend(ImDrawList& draw, const Session& session, ImVec2 corner, float unit);
 
+// "two_sided" → "Two sided".
 std::string EffectLabel(const std::string& effect);
-std::string EffectReason(const std::string& effect);
 
 // The colour of a black body, linear sRGB of luminance 1, negative parts cut off; kelvin from 1667 to 25000
 // [Kim et al. 2002, cubic approximation of the Planckian locus].
