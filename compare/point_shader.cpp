@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <glm/gtc/packing.hpp>
+#include <map>
 #include <optional>
 
+#include "glsl/effects.h"
 #include "glsl/gl_objects.h"
 #include "glsl/light_block.h"
 #include "glsl/program.h"
@@ -26,18 +28,14 @@ glm::dvec3 AsFloats(const glm::dvec3& v) {
   return glm::dvec3(glm::vec3(v));
 }
 
-std::vector<std::pair<std::string, int>> EffectsOf(std::span<const PointCase> cases) {
-  const auto any = [&](LightShape shape) {
-    return static_cast<int>(std::ranges::any_of(cases, [&](const PointCase& c) { return c.shape == shape; }));
-  };
-  return {{"EFFECT_RECTANGLE", any(LightShape::kRectangle)},
-          {"EFFECT_DISK", any(LightShape::kDisk)},
-          {"EFFECT_SPHERE", any(LightShape::kSphere)},
-          {"EFFECT_TWO_SIDED", 0},
-          {"EFFECT_DIFFUSE", 1},
-          {"EFFECT_SPECULAR", 1},
-          {"EFFECT_FRESNEL", 1},
-          {"EFFECT_MANY_LIGHTS", 0}};
+// Everything on but shapes that no case has, the other side of lights, and the loop.
+EffectDefines EffectsOf(std::span<const PointCase> cases) {
+  std::map<std::string, bool> forced = {{"two_sided", false}, {"many_lights", false}};
+  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
+    forced[Name(shape)] = std::ranges::any_of(cases, [&](const PointCase& c) { return c.shape == shape; });
+  }
+  for (const std::string& name : EffectNames()) forced.emplace(name, true);
+  return Defines(SceneEffects(Scene{}), forced);
 }
 
 // A case's rows in order.
