@@ -163,6 +163,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
     });
   }
   for (const SceneResult& scene : results.scenes) fmt::print("{}\n", SummaryTable(scene));
+  if (arguments.timing && results.software) fmt::print("× point, net: a CPU rasteriser's times, not a GPU's\n");
   if (!results.no_isa.empty()) fmt::print("without cycles: {}\n", results.no_isa);
   fmt::print("report: {}\n", (std::filesystem::absolute(arguments.out) / "index.html").lexically_normal().string());
   const bool exceeded = ExceedsLimits(results, limits), worse = !arguments.baseline.empty() && IsWorse(results, arguments.baseline);

@@ -190,4 +190,47 @@ TEST_F(Cli, KilledAtAnyMomentNothingIsHalfWritten) {
   EXPECT_EQ(ReadJson("out/results.json").at("scenes").size(), 1u);
 }
 
+TEST_F(Cli, ASweepInPartsIsTheWholeSweep) {
+  const std::string rest = " --values 0.3,0.6,0.9 --technique point --technique ltc --size 32x32 --seconds 0.1 --context osmesa" + Cache();
+  for (const std::string part : {"1/2", "2/2"}) {
+    const Outcome outcome = Arealab("sweep roughness --shard " + part + " --out " + Path("part" + part.substr(0, 1)) + rest);
+    ASSERT_EQ(outcome.status, 0) << outcome.out;
+  }
+  ASSERT_EQ(Arealab("sweep roughness --out " + Path("whole") + rest).status, 0);
+  const Outcome merged = Arealab("compare --merge " + Path("part2") + " " + Path("part1") + " --out " + Path("merged"));
+  ASSERT_EQ(merged.status, 0) << merged.out;
+  const nlohmann::json a = ReadJson("whole/results.json"), b = ReadJson("merged/results.json");
+  ASSERT_EQ(b.at("scenes").size(), 3u);
+  for (std::size_t s = 0; s < 3; ++s) {
+    EXPECT_EQ(a["scenes"][s]["sweep"], b["scenes"][s]["sweep"]);
+    for (std::size_t v = 0; v < 2; ++v) {
+      EXPECT_EQ(a["scenes"][s]["variants"][v]["error"], b["scenes"][s]["variants"][v]["error"]);
+      EXPECT_EQ(a["scenes"][s]["variants"][v]["isa"], b["scenes"][s]["variants"][v]["isa"]);
+    }
+  }
+  ExpectRefused(Arealab("sweep roughness --shard 3/2 --out " + Path("bad")), "expected i/n");
+  ExpectRefused(Arealab("sweep hue --out " + Path("bad")), "expected one of lights");
+  ExpectRefused(Arealab("compare --merge " + Path("nowhere") + " --out " + Path("bad")), "cannot be read");
+}
+
+TEST_F(Cli, MoreCyclesThanStoredAreStatusOne) {
+  const auto cycles = nlohmann::json::parse(Arealab("cost --json --technique point --gpu bonaire" + Cache()).out);
+  const int now = cycles.at("variants").at(0).at("isa").at("bonaire").at("core").at("cycles");
+  const auto stored = [&](int count, const std::string& compilers) {
+    const nlohmann::json file = {{"compilers", compilers}, {"cycles", {{"rectangle", {{"point", {{"bonaire", count}}}}}}}};
+    return Arealab("cost --gpu bonaire --baseline " + WriteFile("cycles.json", file.dump()) + Cache());
+  };
+  const std::string compilers = cycles.at("compilers");
+  EXPECT_EQ(stored(now, compilers).status, 0);
+  EXPECT_EQ(stored(now + 1, compilers).status, 0);
+  const Outcome more = stored(now - 1, compilers);
+  EXPECT_EQ(more.status, 1);
+  EXPECT_NE(more.out.find("point, bonaire: " + std::to_string(now - 1) + " → " + std::to_string(now)), std::string::npos) << more.out;
+  const Outcome other = stored(1, "another compiler");
+  EXPECT_EQ(other.status, 0);
+  EXPECT_NE(other.out.find("not compared"), std::string::npos) << other.out;
+  ExpectRefused(Arealab("cost --gpu voodoo"), "no GPU \"voodoo\"");
+  ExpectRefused(Arealab("cost --baseline " + WriteFile("none.json", "{}") + Cache()), "no stored cycles");
+}
+
 }  // namespace
