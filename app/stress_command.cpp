@@ -44,6 +44,7 @@ void PrintStressJson(const StressResult& result) {
       row["families"].push_back({{"name", family.family->name},
                                  {"cases", family.cases},
                                  {"nonfinite", family.nonfinite},
+                                 {"nonfinite_strict", family.hidden},
                                  {"negative", family.negative},
                                  {"p999", family.p999},
                                  {"worst", Figure(family.worst)},
@@ -53,6 +54,15 @@ void PrintStressJson(const StressResult& result) {
                                  {"cause", family.cause},
                                  {"failures", family.failures},
                                  {"case", CaseLine(family.worst_case)}});
+    }
+    row["paths"] = nlohmann::ordered_json::array();
+    for (const PathResult& path : variant.paths) {
+      row["paths"].push_back({{"name", path.path->name},
+                              {"shape", Name(path.shape)},
+                              {"lobe", path.lobe},
+                              {"step", Figure(path.step)},
+                              {"bend", Figure(path.bend)},
+                              {"failures", path.failures}});
     }
     json["variants"].push_back(std::move(row));
   }
@@ -71,17 +81,23 @@ void PrintStress(const StressResult& result) {
                static_cast<double>(cases) / variant.seconds,
                variant.ideal.empty() ? "" : "; ideal: " + variant.ideal,
                variant.judged ? "" : "; shown, not judged");
-    fmt::print("  {:<14}{:>10}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "family", "nonfinite", "negative",
-               "p99.9", "worst", "ulps", "approx.", "half tab.");
+    fmt::print("  {:<14}{:>10}{:>7}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "family", "nonfinite", "strict",
+               "negative", "p99.9", "worst", "ulps", "approx.", "half tab.");
     for (const FamilyResult& family : variant.families) {
-      fmt::print("  {:<14}{:>10}{:>9}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{}\n", family.family->name,
-                 family.nonfinite, family.negative, family.p999, family.worst, family.backward,
-                 family.approximation, family.half_tables, family.family->ill_conditioned ? "  *" : "");
+      fmt::print("  {:<14}{:>10}{:>7}{:>9}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{}\n",
+                 family.family->name, family.nonfinite, family.hidden, family.negative, family.p999,
+                 family.worst, family.backward, family.approximation, family.half_tables,
+                 family.family->ill_conditioned ? "  *" : "");
       for (const std::string& failure : family.failures) fmt::print("    FAILS: {}\n", failure);
       if (!family.failures.empty()) fmt::print("    --case '{}'\n", CaseLine(family.worst_case));
       if (!family.cause.empty())
         fmt::print("    bounds {:g}, {:g}, {:g} ulps: {}\n", family.bounds.worst, family.bounds.p999,
                    family.bounds.backward, family.cause);
+    }
+    for (const PathResult& path : variant.paths) {
+      fmt::print("  {:<14}{:<10} {:<9} step {:>8.1e}  bend {:>8.1e}\n", path.path->name, Name(path.shape),
+                 path.lobe, path.step, path.bend);
+      for (const std::string& failure : path.failures) fmt::print("    FAILS: {}\n", failure);
     }
   }
   fmt::print(
@@ -126,14 +142,21 @@ int RunMutantTest(const CommonOptions& common) {
     options.progress = [&](const std::string& what, double fraction) { progress.Show(what, fraction); };
     results = RunMutants(*common.MakeContext(), options);
   }
+  std::ptrdiff_t caught = 0, survived = 0;
   for (const MutantResult& result : results) {
-    fmt::print("{:<9} {:<12} {:<30} {}\n          {}\n", result.caught.empty() ? "SURVIVED" : "caught",
-               result.mutant->technique, result.mutant->file, result.mutant->what, result.caught);
+    const bool equivalent = result.caught.empty() && result.mutant->equivalent != nullptr;
+    caught += !result.caught.empty();
+    survived += result.caught.empty() && !equivalent;
+    fmt::print("{:<10} {:<12} {:<32} {}\n           {}\n",
+               !result.caught.empty() ? "caught"
+               : equivalent           ? "equivalent"
+                                      : "SURVIVED",
+               result.mutant->technique, result.mutant->file, result.mutant->what,
+               equivalent ? result.mutant->equivalent : result.caught);
   }
-  const auto survived =
-      std::ranges::count_if(results, [](const MutantResult& result) { return result.caught.empty(); });
-  fmt::print("{} of {} caught\n", static_cast<std::ptrdiff_t>(results.size()) - survived, results.size());
-  return 20 * survived <= static_cast<std::ptrdiff_t>(results.size()) ? 0 : kExitLimitExceeded;
+  fmt::print("{} caught, {} survived, {} equivalent\n", caught, survived,
+             static_cast<std::ptrdiff_t>(results.size()) - caught - survived);
+  return 20 * survived <= caught + survived ? 0 : kExitLimitExceeded;
 }
 
 int RunStress(const StressArguments& arguments) {
@@ -142,6 +165,7 @@ int RunStress(const StressArguments& arguments) {
   StressOptions options;
   options.cases = arguments.cases;
   options.seed = arguments.seed;
+  options.pictures = !arguments.out.empty();
   // A variant that is asked for is judged; of all, the default forms are.
   for (const std::string& name : arguments.techniques)
     options.variants.push_back(ParseVariant(techniques, name));

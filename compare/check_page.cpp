@@ -1,101 +1,25 @@
 #include "compare/check_page.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 
 #include "compare/image_files.h"
 #include "compare/metrics.h"
-#include "scenes/error.h"
+#include "compare/page_parts.h"
 
 namespace arealab {
 namespace {
 
 namespace fs = std::filesystem;
-using Rgb = std::array<std::uint8_t, 3>;
 
 constexpr double kGoldenRange = 0.02;  // four times the golden test's threshold
 constexpr double kTruthRange = 0.5;
 
-// The report's palettes (signedColor and magnitudeColor of report.js) at eighths of their range.
-constexpr std::array<Rgb, 17> kSigned{{{169, 234, 255},
-                                       {105, 207, 246},
-                                       {77, 176, 221},
-                                       {55, 146, 194},
-                                       {41, 116, 164},
-                                       {31, 87, 132},
-                                       {24, 61, 98},
-                                       {18, 37, 62},
-                                       {15, 15, 15},
-                                       {56, 28, 7},
-                                       {88, 48, 7},
-                                       {118, 71, 12},
-                                       {147, 97, 27},
-                                       {175, 125, 48},
-                                       {201, 156, 74},
-                                       {225, 187, 106},
-                                       {248, 220, 142}}};
-constexpr std::array<Rgb, 9> kMagnitude{{{9, 3, 33},
-                                         {49, 2, 73},
-                                         {99, 0, 93},
-                                         {155, 0, 94},
-                                         {207, 32, 75},
-                                         {241, 88, 41},
-                                         {255, 147, 40},
-                                         {255, 201, 106},
-                                         {255, 248, 189}}};
 constexpr Rgb kNonfinite{255, 0, 255}, kUnlit{84, 88, 95};
-
-// t in [0, 1] along the palette.
-template <std::size_t kCount>
-Rgb Color(const std::array<Rgb, kCount>& palette, double t) {
-  const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(kCount - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(place), kCount - 2);
-  const double part = place - static_cast<double>(below);
-  Rgb color;
-  for (std::size_t c = 0; c < 3; ++c) {
-    color[c] = static_cast<std::uint8_t>(
-        std::lround((1.0 - part) * palette[below][c] + part * palette[below + 1][c]));
-  }
-  return color;
-}
-
-std::string Base64(const std::vector<unsigned char>& bytes) {
-  static const char* const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve(4 * (bytes.size() / 3 + 1));
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t b = 0; b < 3; ++b) group = group << 8 | (b < have ? bytes[i + b] : 0u);
-    for (std::size_t d = 0; d < 4; ++d) text += d <= have ? kDigits[group >> (18 - 6 * d) & 63u] : '=';
-  }
-  return text;
-}
-
-// The figure of a picture, as PNG inside the page.
-std::string Figure(const std::vector<Rgb>& pixels, int width, const std::string& caption) {
-  const int height = static_cast<int>(pixels.size() / static_cast<std::size_t>(width));
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  auto output = OIIO::ImageOutput::create("png");
-  const OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  if (!output || !output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close()) {
-    throw std::runtime_error("OpenImageIO cannot encode a PNG in memory");
-  }
-  return fmt::format(
-      "<figure><img alt=\"{0}\" width=\"{1}\" height=\"{2}\" "
-      "src=\"data:image/png;base64,{3}\"><figcaption>{0}</figcaption></figure>\n",
-      caption, width, height, Base64(bytes));
-}
 
 bool Finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -154,29 +78,6 @@ Maps MapsOf(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b, do
   return maps;
 }
 
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (char c : text) {
-    switch (c) {
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 std::string Comparison(const CheckCase& row, const RadianceImage& reference, const std::string& name,
                        double range) {
   const RadianceImage& image = *row.image;
@@ -194,12 +95,12 @@ std::string Comparison(const CheckCase& row, const RadianceImage& reference, con
     const Maps maps = MapsOf(a, b, range);
     const bool whole = lobe == "total";
     html += "<div class=\"row\">\n";
-    html += Figure(Shown(whole ? Picture(image, emission) : a, row.exposure), image.width, lobe + ": result");
-    html += Figure(Shown(whole ? Picture(reference, emission) : b, row.exposure), image.width,
+    html += FigureHtml(Shown(whole ? Picture(image, emission) : a, row.exposure), image.width, lobe + ": result");
+    html += FigureHtml(Shown(whole ? Picture(reference, emission) : b, row.exposure), image.width,
                    fmt::format("{}: {}", lobe, name));
-    html += Figure(maps.difference, image.width,
+    html += FigureHtml(maps.difference, image.width,
                    fmt::format("signed difference, −{0:g} % … +{0:g} %", 100.0 * range));
-    html += Figure(maps.magnitude, image.width, fmt::format("magnitude, 0 … {:g} %", 100.0 * range));
+    html += FigureHtml(maps.magnitude, image.width, fmt::format("magnitude, 0 … {:g} %", 100.0 * range));
     html += "</div>\n";
   }
   return html;
@@ -267,17 +168,7 @@ void WriteCheckPage(const CheckResult& result, const std::string& command, const
   }
   html += "</body>\n</html>\n";
 
-  std::error_code error;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  const fs::path temporary = file.string() + fmt::format(".{}.tmp", getpid());
-  std::ofstream stream(temporary, std::ios::binary);
-  stream << html;
-  stream.close();
-  if (stream) fs::rename(temporary, file, error);
-  if (!stream || error) {
-    throw InputError(fmt::format("{}: cannot be written; expected a folder with room that may be written to",
-                                 file.string()));
-  }
+  ReplaceFile(file, html);
 }
 
 }  // namespace arealab

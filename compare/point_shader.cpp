@@ -113,7 +113,8 @@ struct PointShader::Impl {
 
   const Program& Prepare(const Variant& variant, std::span<const PointCase> all,
                          const PointOptions& options) {
-    const ExpandedSource source = Expand(library, "points.frag", variant, EffectsOf(all), options.precision);
+    const ExpandedSource source = Expand(library, options.strict ? "strict_points.frag" : "points.frag",
+                                         variant, EffectsOf(all), options.precision);
     std::unique_ptr<Program>& program = programs[source.text];
     if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
     for (const Knob& knob : variant.technique->knobs) {

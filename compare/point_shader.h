@@ -42,6 +42,7 @@ struct PointOptions {
   std::map<std::string, double> knobs = {};  // override the header's initial values by name
   bool as_lighting_pass =
       false;  // black where the lighting pass shades nothing: behind the light, away from the viewer
+  bool strict = false;       // min, max and clamp pass a NaN on (glsl/strict_order.glsl); in float alone
   bool half_tables = false;  // the tables' texels rounded to half floats
 };
 

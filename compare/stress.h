@@ -43,9 +43,16 @@ struct StressAllowance {
   const char* cause;
 };
 
+// Of a picture about the worst case: kPatch × kPatch points of its surface's plane, the case in the middle,
+// half as far to each side as the light is.
+constexpr int kPatch = 48;
+
 struct FamilyResult {
   const StressFamily* family = nullptr;
   std::int64_t cases = 0, nonfinite = 0, negative = 0;
+  // Not finite where min, max and clamp pass a NaN on, as GLSL leaves them to; over the first kIdealCases of
+  // each shape.
+  std::int64_t hidden = 0;
   double p999 = 0.0, worst = 0.0;  // rounding error, relative as above
   // Over the cases whose rounding error is above the bound of `worst` (the worst kMostProbed of each shape):
   // what is above it over what one ulp of every input does. Inputs are moved 48 times, each component of a
@@ -59,6 +66,8 @@ struct FamilyResult {
       0.0;  // of float with tables of half floats against float, at 99.9 %; over the same cases
   PointCase
       worst_case;  // the first that is not finite, else the first negative one, else that of the worst error
+  std::vector<float> patch_value,
+      patch_error;  // both lobes over the radiance, in float; rounding error; where asked for
   StressBounds bounds;
   std::string cause;                  // why they are looser than the general ones; empty where they are not
   std::vector<std::string> failures;  // one line each: what is exceeded
@@ -66,12 +75,32 @@ struct FamilyResult {
   std::vector<std::string> Judge() const;
 };
 
+// A lobe along a path of kPathPoints cases, in float against the ideal form in double. Relative to the
+// ideal's value there, at least a thousandth of its greatest on the path.
+constexpr int kPathPoints = 2048;
+struct PathResult {
+  const StressPath* path = nullptr;
+  LightShape shape = LightShape::kRectangle;
+  const char* lobe = "diffuse";
+  // By how much more than the ideal's the value steps from one point to the next, at most.
+  double step = 0.0;
+  // Banding, ringing: the second difference over 1/128 of the path, less the ideal's, at most. What an eye
+  // sees as a band is a change of slope.
+  double bend = 0.0;
+  std::vector<float> value, ideal;
+  std::vector<std::string> failures;
+};
+
+// What is allowed of both. A step is rounding; a bend is what the variant's shortcuts do.
+constexpr double kMostStep = 5e-3, kMostBend = 1e-2;
+
 struct VariantStress {
   std::string name;    // short
   std::string ideal;   // the ideal form's name; empty where the technique has none
   bool judged = true;  // counts for the exit status
   double seconds = 0.0;
   std::vector<FamilyResult> families;
+  std::vector<PathResult> paths;
 };
 
 struct StressOptions {
@@ -79,6 +108,8 @@ struct StressOptions {
   std::vector<bool> judged;     // parallel; published forms are shown, and may fail
   std::int64_t cases = 240000;  // of a variant, over all families and shapes
   std::uint64_t seed = 1;
+  std::optional<LightShape> shape;  // one alone
+  bool pictures = false;            // fill patch_value and patch_error
   std::function<void(const std::string&, double)> progress;
 };
 

@@ -50,6 +50,25 @@ void SetView(PointCase& c, double cosine, CaseRandom& random) {
       cosine * c.normal + std::sqrt(std::max(1.0 - cosine * cosine, 0.0)) * random.Perpendicular(c.normal);
 }
 
+// All along the world's axes in quarters of a metre: what random numbers never do, an exact 0, scenes do all
+// the time.
+void Align(PointCase& c, CaseRandom& random) {
+  const auto quarters = [&](int from, int to) { return 0.25 * std::floor(random(from, to + 1.0)); };
+  const std::array<dvec3, 3> axes{dvec3(1.0, 0.0, 0.0), dvec3(0.0, 1.0, 0.0), dvec3(0.0, 0.0, 1.0)};
+  const auto first = static_cast<std::size_t>(random(0.0, 2.999)),
+             second = (first + (random.Chance(0.5) ? 1 : 2)) % 3;
+  const double cosine = glm::dot(c.normal, c.to_view);
+  c.normal = axes[static_cast<std::size_t>(random(0.0, 2.999))] * (random.Chance(0.5) ? 1.0 : -1.0);
+  SetView(c, random.Chance(0.3) ? 1.0 : cosine, random);
+  c.light_normal = axes[first] * (random.Chance(0.5) ? 1.0 : -1.0);
+  c.axis_x = axes[second];
+  c.axis_y = glm::cross(c.light_normal, c.axis_x);
+  SetSize(c, quarters(1, 8), quarters(1, 8));
+  const double least = c.shape == LightShape::kSphere ? c.half_size.x + 0.25 : 0.5;
+  c.center = c.position - c.light_normal * (least + quarters(0, 8)) + c.axis_x * quarters(-4, 4) +
+             c.axis_y * quarters(-4, 4);
+}
+
 // Everything that a scene ordinarily has: half sizes of 0.2 to 2 m, 1 to 4 m away (a sphere is left by at
 // least a tenth of its radius), lit from the front; a roughness from 0.1 to 1.
 PointCase Ordinary(CaseRandom& random, LightShape shape) {
@@ -73,6 +92,7 @@ PointCase Ordinary(CaseRandom& random, LightShape shape) {
   if (glm::dot(normal, to_center) > 0.0) normal = -normal;
   if (glm::dot(normal, to_center) > -0.05) normal -= 0.1 * to_center;  // edge-on is a family of its own
   FaceTo(c, normal, random);
+  if (random.Chance(0.15)) Align(c, random);
   return c;
 }
 
@@ -112,12 +132,17 @@ PointCase Touching(CaseRandom& random, LightShape shape) {
   return c;
 }
 
+// Over the light's plane, next to it: 0, 1e-25 m or 1e-9 of the light's size to `most` of it.
+double Height(double most, const PointCase& c, CaseRandom& random) {
+  if (random.Chance(0.2)) return random.Chance(0.5) ? 0.0 : 1e-25;
+  return random.Log(1e-9, most) * Length(c);
+}
+
 // On the light's plane, or as near to it as 1e-9 to 1e-4 of its size; inside the outline and out.
 PointCase OnPlane(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
   const double reach = random.Chance(0.5) ? 0.99 : 4.0;
-  PlacePoint(c, random(-reach, reach), random(-reach, reach),
-             random.Chance(0.2) ? 0.0 : random.Log(1e-9, 1e-4) * Length(c));
+  PlacePoint(c, random(-reach, reach), random(-reach, reach), Height(1e-4, c, random));
   return c;
 }
 
@@ -132,7 +157,7 @@ PointCase OnEdge(CaseRandom& random, LightShape shape) {
   }
   if (random.Chance(0.7)) x += random.Signed(1e-9, 1e-3);
   if (shape == LightShape::kRectangle && random.Chance(0.5)) std::swap(x, y);
-  PlacePoint(c, x, y, random.Chance(0.2) ? 0.0 : random.Log(1e-9, 1e-3) * Length(c));
+  PlacePoint(c, x, y, Height(1e-3, c, random));
   return c;
 }
 
@@ -143,7 +168,7 @@ PointCase OnCorner(CaseRandom& random, LightShape shape) {
     x += random.Signed(1e-9, 1e-3);
     y += random.Signed(1e-9, 1e-3);
   }
-  PlacePoint(c, x, y, random.Chance(0.2) ? 0.0 : random.Log(1e-9, 1e-3) * Length(c));
+  PlacePoint(c, x, y, Height(1e-3, c, random));
   return c;
 }
 
@@ -265,6 +290,11 @@ PointCase ViewBelow(CaseRandom& random, LightShape shape) {
 // Roughness 0, the least alpha, 1, one that is denormal.
 PointCase Roughness(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
+  if (random.Chance(0.1)) {  // the half vector is the normal, to the last bit
+    c.to_view = c.normal;
+    c.center = c.position + 4.0 * c.normal;
+    FaceTo(c, -c.normal, random);
+  }
   const std::array<double, 5> values{0.0, 1e-4, 1.0, 1e-40, 0.01};
   c.roughness = values[static_cast<std::size_t>(random(0.0, 4.999))];
   return c;
@@ -324,6 +354,71 @@ PointCase ZeroVector(CaseRandom& random, LightShape shape) {
   const double cosine = glm::dot(c.normal, c.to_view);
   c.normal = random.Perpendicular(to_center);  // F lies in the horizon
   SetView(c, cosine, random);
+  return c;
+}
+
+double Between(double from, double to, double t) {
+  return from + (to - from) * t;
+}
+
+// A panel of 1 × 0.6 m, 2 m away on the x axis, that faces the point; the viewer opposite at `view` rad from
+// the normal.
+PointCase Panel(double view, LightShape shape) {
+  PointCase c;
+  c.shape = shape;
+  c.roughness = 0.25;
+  c.to_view = {-std::sin(view), 0.0, std::cos(view)};
+  c.center = {2.0, 0.0, 0.8};
+  c.light_normal = {-1.0, 0.0, 0.0};
+  c.axis_x = {0.0, 1.0, 0.0};
+  c.axis_y = {0.0, 0.0, -1.0};
+  SetSize(c, 0.5, 0.3);
+  return c;
+}
+
+PointCase Sinking(double t, LightShape shape) {
+  PointCase c = Panel(1.2, shape);
+  c.center.z = Between(0.7, -0.7, t);
+  return c;
+}
+
+PointCase Swinging(double t, LightShape shape) {
+  PointCase c = Panel(Between(-0.3, 0.3, t), shape);
+  c.center = {0.3, 0.2, 1.5};
+  c.light_normal = {0.0, 0.0, -1.0};
+  c.axis_x = {1.0, 0.0, 0.0};
+  c.axis_y = {0.0, -1.0, 0.0};
+  return c;
+}
+
+PointCase Polished(double t, LightShape shape) {
+  PointCase c = Panel(1.1, shape);
+  c.roughness = Between(0.3, 0.0, t);
+  return c;
+}
+
+// Across a smooth floor, from under the panel's foot to 20 m before it.
+PointCase AcrossFloor(double t, LightShape shape) {
+  PointCase c = Panel(1.0, shape);
+  c.roughness = 0.2;
+  c.center.x = 0.05 * std::pow(400.0, t);
+  return c;
+}
+
+PointCase Grazing(double t, LightShape shape) {
+  PointCase c = Panel(Between(1.309, 1.536, t), shape);  // 75° to 88°
+  c.roughness = 0.08;
+  c.center = {4.0, 0.0, 0.5};
+  return c;
+}
+
+// The point sinks to the light's plane, past its side.
+PointCase ToThePlane(double t, LightShape shape) {
+  PointCase c = Panel(0.8, shape);
+  c.light_normal = {0.0, 0.0, -1.0};
+  c.axis_x = {1.0, 0.0, 0.0};
+  c.axis_y = {0.0, -1.0, 0.0};
+  c.center = {0.45, 0.0, 0.5 * std::pow(1e-3, t)};
   return c;
 }
 
@@ -417,6 +512,18 @@ const std::vector<StressFamily>& StressFamilies() {
        ZeroVector},
   };
   return families;
+}
+
+const std::vector<StressPath>& StressPaths() {
+  static const std::vector<StressPath> paths{
+      {"sinking", "a panel sinks through the horizon", kAll, Sinking},
+      {"swinging", "the view swings through the normal", kAll, Swinging},
+      {"polished", "the roughness falls from 0.3 to 0", kAll, Polished},
+      {"floor", "across a smooth floor, away from a panel on it", kAll, AcrossFloor},
+      {"grazing", "the view sinks from 75° to 88°, roughness 0.08", kAll, Grazing},
+      {"plane", "the point nears the light's plane, past its side", kFlat, ToThePlane},
+  };
+  return paths;
 }
 
 std::vector<PointCase> MakeCases(const StressFamily& family, LightShape shape, int count,

@@ -43,6 +43,15 @@ const std::vector<StressFamily>& StressFamilies();
 // The first `count` cases of a family, as floats; the same for the same seed, and the first of more.
 std::vector<PointCase> MakeCases(const StressFamily& family, LightShape shape, int count, std::uint64_t seed);
 
+// A way through a hard place: what a frame sees while something moves. t runs from 0 to 1.
+struct StressPath {
+  const char* name;      // "sinking"
+  const char* sentence;  // what moves
+  std::vector<LightShape> shapes;
+  PointCase (*make)(double t, LightShape shape);
+};
+const std::vector<StressPath>& StressPaths();
+
 // A case as one line, "shape=disk position=0,0,0 … radiance=1", every number in the digits that tell floats
 // apart, and back. Throws InputError on what is not such a line; what is left out has the value of a
 // PointCase.

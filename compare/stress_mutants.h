@@ -17,6 +17,7 @@ struct Mutant {
   const char* text;       // occurs in it exactly once
   const char* becomes;
   const char* what;
+  const char* equivalent = nullptr;  // why nothing that can be drawn tells it from the right text, where so
 };
 
 // Chosen before the checks were tuned.

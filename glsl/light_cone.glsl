@@ -184,6 +184,14 @@ vec3 ClippedConeVector(LightCone cone) {
   bool one_side = cone.center.z * cone.center.z >= cone.half_a.z * cone.half_a.z + cone.half_b.z * cone.half_b.z;
   if (WhollyOnOneSide(one_side)) return whole.axis * (cone.center.z > 0.0 ? whole.size : 0.0);
 
+  // A cone this narrow is cut by its mean height, spread evenly, as a small rectangle is (polygon.glsl).
+  float distance2 = dot(cone.center, cone.center);
+  if (!Lit(cone.trace >= kSmallRectangle * distance2)) {
+    float reach = sqrt(cone.half_a.z * cone.half_a.z + cone.half_b.z * cone.half_b.z);
+    float above = clamp(cone.center.z, -reach, reach) + reach;
+    return vec3(whole.axis.x, whole.axis.y, above * above / max(4.0 * reach, 1e-30) * inversesqrt(distance2)) * whole.size;
+  }
+
   // G across e3, over a horizontal axis u and an upward one v, turned to its own axes; −ma ≤ −mb are its eigenvalues.
   vec3 e3 = whole.axis;
   float mu = whole.mu;

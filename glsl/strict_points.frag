@@ -1,0 +1,4 @@
+// points.frag where no driver hides a NaN.
+#include "platform"
+#include "strict_order.glsl"
+#include "points.frag"
