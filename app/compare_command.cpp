@@ -30,6 +30,7 @@ struct CompareArguments {
   double tolerance = 1e-4;
   bool all_variants = false;
   bool timing = false;
+  bool split = false;
 };
 
 struct Limit {
@@ -139,6 +140,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   options.truth.tolerance = arguments.tolerance;
   options.cache = arguments.common.CacheFolder();
   CheckReportDirectory(arguments.out);
+  options.split = arguments.split;
   if (arguments.timing) options.timed_against = ParseVariant(techniques, "point");
   const std::string no_isa = PrepareCost(arguments, options);
   if (arguments.scenes.empty()) options.scenes = BuiltInScenes();
@@ -184,6 +186,8 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
   command->add_flag("--all-variants", arguments->all_variants, "every combination of every technique's options");
   command->add_option("--limit", arguments->limits,
                       "METRIC=X: exit with status 1 where a variant's total error exceeds X, e.g. rel_rmse=0.05");
+  command->add_flag("--split", arguments->split,
+                    "say whose error it is, in results.json: the mathematics', its shortcuts' or rounding's");
   command->add_flag("--timing", arguments->timing,
                     "time the lighting pass of every variant as a ratio to point, in interleaved rounds");
   command->add_option("--gpu", arguments->gpus,

@@ -160,6 +160,19 @@ std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pi
   return emission;
 }
 
+namespace {
+
+ErrorSplit SplitError(Renderer& renderer, const Variant& variant, const RadianceImage& image, const RadianceImage& truth) {
+  const auto error = [&](const RadianceImage& a, const RadianceImage& b) {
+    return CompareImages(TotalRadiance(a), TotalRadiance(b), truth.width).rel_rmse;
+  };
+  const RadianceImage in_double = renderer.Shade(variant, Precision::kDouble),
+                      ideal = renderer.Shade(IdealVariant(variant), Precision::kDouble);
+  return {error(ideal, truth), error(in_double, ideal), error(image, in_double)};
+}
+
+}  // namespace
+
 Results Compare(Context& context, const ShaderLibrary& library, const CompareOptions& options) {
   Results results;
   results.machine = Machine();
@@ -213,6 +226,7 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
       report(variant.ShortName(), 0.5 + 0.2 * static_cast<double>(v) / static_cast<double>(options.variants.size()));
       VariantResult row = Describe(variant, scene);
       if (row.supported) row.image = std::make_shared<const RadianceImage>(renderer.Shade(variant));
+      if (row.supported && options.split) row.split = SplitError(renderer, variant, *row.image, truth.radiance);
       result.variants.push_back(std::move(row));
     }
     if (options.timed_against) {

@@ -27,6 +27,7 @@ struct CompareOptions {
   TruthOptions truth;
   ShadowOptions shadow;
   std::filesystem::path cache;                               // folder of truths that are already known
+  bool split = false;  // say whose error it is: two more pictures of each variant, in double
   std::optional<Variant> timed_against;                      // `point`, where the passes are to be timed
   TimingOptions timing;
   std::shared_ptr<const CostMeter> cost;                     // what compiles for GPUs that are not here; may be null

@@ -67,7 +67,10 @@ Json VariantJson(const VariantResult& variant) {
   json["error"] = {{"total", ErrorJson(variant.total)},
                    {"diffuse", ErrorJson(variant.diffuse)},
                    {"specular", ErrorJson(variant.specular)},
-                   {"split", {{"model", nullptr}, {"approximation", nullptr}, {"rounding", nullptr}}}};
+                   {"split",
+                    {{"model", Number(variant.split.model)},
+                     {"approximation", Number(variant.split.approximation)},
+                     {"rounding", Number(variant.split.rounding)}}}};
   json["time"] = TimeJson(variant.time);
   json["isa"] = IsaObject(variant.isa);
   return json;

@@ -50,6 +50,12 @@ struct GpuCost {
   std::map<std::string, ShaderCost> paths;  // of a branching core, by where the light lies: "above", "crossing", "below"
 };
 
+// Whose error it is, as relative RMSE of the total: the mathematics' (the ideal form in double against the truth), its shortcuts'
+// (the variant in double against the ideal form), rounding's (in float against the same text in double).
+struct ErrorSplit {
+  double model = kNotMeasured, approximation = kNotMeasured, rounding = kNotMeasured;
+};
+
 struct VariantResult {
   std::string name;        // canonical: "ltc+clip=switch"
   std::string short_name;  // "ltc@published"
@@ -60,6 +66,7 @@ struct VariantResult {
   std::string reason;  // why not
   int nonfinite_pixels = 0;
   ErrorMetrics total, diffuse, specular;  // against truth
+  ErrorSplit split;                       // where asked for
   bool within_truth_error = false;        // error below 4 × the truth's own: not ranked
   Timing time;
   std::map<std::string, GpuCost> isa;     // by the GPU's name; empty where not compiled
