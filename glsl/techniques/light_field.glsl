@@ -60,7 +60,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   // The early test: how far the centre is above the horizon, against how far the corners reach.
   float reach = abs(view.half_a.z) + abs(view.half_b.z);
-  if (WhollyBelow(view.center.z < -reach)) return result;
+  if (WhollyBelow(view.center.z <= -reach)) return result;
   vec3 field;  // vector irradiance over π·radiance, world
 #if EFFECT_HORIZON
   if (WhollyAbove(view.center.z > reach))
