@@ -43,6 +43,7 @@ nlohmann::ordered_json AsJson(const Explanation& explanation) {
     json["effects"].push_back({{"name", price.effect.name},
                                {"on", price.effect.on},
                                {"forced", price.forced},
+                               {"asked", price.asked},
                                {"reason", price.effect.reason},
                                {"time_ratio", RatioJson(price.time_ratio)},
                                {"cycles", price.cycles}});
@@ -60,7 +61,7 @@ std::string AsText(const Explanation& explanation, const std::vector<std::string
   for (const EffectPrice& price : explanation.effects) {
     std::vector<std::string> row{price.effect.name, price.effect.on ? "on" : "off"};
     if (prices) {
-      row.push_back(RatioText(price.time_ratio));
+      row.push_back(price.asked ? RatioText(price.time_ratio) : "not asked");
       for (const std::string& gpu : gpus) {
         const auto cycles = price.cycles.find(gpu);
         row.push_back(cycles == price.cycles.end() ? "–" : fmt::format("{:+}", cycles->second));

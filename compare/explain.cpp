@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compare/timing.h"
+#include "glsl/expand.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -35,15 +36,19 @@ Explanation Explain(const Context& context, Renderer& renderer, const ShaderLibr
   explanation.variant = variant.Name();
   // First the program itself, for its cycles, and the one with every effect, then one per effect with that turned the other way.
   const Variant all = WithAllEffects(variant);
+  const std::string text =
+      Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), Precision::kFloat, scene.brdf).text;
   std::vector<Variant> programs{variant, all};
   std::vector<std::size_t> turned;  // by program, from the third
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    EffectPrice price{effects[i], false, {}, {}};
+    EffectPrice price{effects[i], false, true, {}, {}};
+    const std::string define = effects[i].Define();
+    price.asked = text.find(define, text.find(define) + 1) != std::string::npos;  // beside its definition
     if (const auto forced = variant.effects.find(effects[i].name); forced != variant.effects.end()) {
       price.effect.on = forced->second;
       price.forced = true;
     }
-    if (options.prices && MayBeTurned(price.effect, all)) {
+    if (options.prices && price.asked && MayBeTurned(price.effect, all)) {
       programs.push_back(variant);
       programs.back().effects[price.effect.name] = !price.effect.on;
       turned.push_back(i);

@@ -17,6 +17,7 @@ namespace arealab {
 struct EffectPrice {
   Effect effect;
   bool forced = false;  // by the user
+  bool asked = true;    // whether the variant's text asks for it; where not it costs nothing
   // Time of the lighting pass with the effect over the time without it, all else as the scene wants it; not measured
   // where the technique does not take the effect, or where without it another scene would be drawn.
   Estimate time_ratio;

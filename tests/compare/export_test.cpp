@@ -1,0 +1,168 @@
+// What `arealab export` writes stands alone: it compiles in every dialect, and a renderer that knows nothing of ours draws the same
+// picture with it.
+#include "glsl/export.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+
+#include "compare/context.h"
+#include "compare/subprocess.h"
+#include "glsl/light_block.h"
+#include "glsl/renderer.h"
+#include "tests/compare/stranger.h"
+#include "tests/glsl/temporary_folder.h"
+
+namespace arealab {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr glm::ivec2 kSize(48, 48);
+
+std::vector<float> Floats(const std::vector<glm::vec4>& texels) {
+  const float* first = &texels[0].x;
+  return {first, first + 4 * texels.size()};
+}
+
+// A scene's first light alone, drawn by AreaLab, with what a stranger needs to draw it too.
+struct Drawn {
+  stranger::Input input;
+  RadianceImage image;
+};
+
+Drawn DrawOneLight(const GladGLContext& gl, const ShaderLibrary& library, const Variant& variant, const Scene& scene) {
+  Renderer renderer(gl, library);
+  const SurfacePixels& pixels = renderer.DrawScene(scene, kSize);
+  Drawn drawn;
+  drawn.input = {pixels.width, pixels.height, {}, {pixels.view_position.x, pixels.view_position.y, pixels.view_position.z},
+                 Floats(LightBlockRows(scene.lights))};
+  drawn.input.gbuffer = {{"gbuffer_position", Floats(pixels.position)},
+                         {"gbuffer_normal", Floats(pixels.normal)},
+                         {"gbuffer_base_color", Floats(pixels.base_color)}};
+  drawn.image = renderer.Shade(variant);
+  return drawn;
+}
+
+void ExportTo(const std::filesystem::path& folder, const std::string& scene, const std::string& variant) {
+  const ProcessResult result = RunProcess({AREALAB_PROGRAM, "export", scene, "--technique", variant, "--out", folder.string()}, {}, {});
+  ASSERT_EQ(result.status, 0) << result.messages;
+}
+
+// The largest difference over the lobe's largest radiance.
+double Difference(const std::vector<float>& theirs, const std::vector<glm::vec3>& ours) {
+  double most = 0.0, apart = 0.0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      most = std::max(most, std::abs(static_cast<double>(ours[i][c])));
+      apart = std::max(apart, std::abs(static_cast<double>(theirs[4 * i + static_cast<std::size_t>(c)]) - static_cast<double>(ours[i][c])));
+    }
+  }
+  return apart / most;
+}
+
+TEST(Export, AStrangerDrawsTheSamePicture) {
+  const auto context = CreateContext(ContextKind::kOsmesa);
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  for (const std::string name : {"ltc", "hill", "drobot", "ltc@published"}) {
+    const TemporaryFolder folder;
+    ExportTo(folder.path(), "gloss", name);
+    const Variant variant = ParseVariant(techniques, name);
+    const Drawn drawn = DrawOneLight(context->gl(), library, variant, LoadScene(FindScene("gloss")));
+    const stranger::Output theirs = stranger::Draw(context->gl(), folder.path().string(), variant.technique->name, drawn.input);
+    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
+    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;
+  }
+}
+
+TEST(Export, EveryDefaultVariantIsDecidedAndCompiles) {
+  const auto context = CreateContext(ContextKind::kOsmesa);
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  for (const Variant& variant : DefaultVariants(techniques)) {
+    const Variant all = WithAllEffects(variant);
+    for (const char* name : {"gloss", "bulbs", "sixteen"}) {
+      const Scene scene = LoadScene(FindScene(name));
+      if (WhyUnsupported(variant, scene)) continue;
+      const std::vector<Effect> effects = SceneEffects(scene);
+      for (const Variant& one : {variant, all}) {
+        SCOPED_TRACE(one.Name() + " for " + name);
+        const std::string text = ExportShader(library, one, effects, scene.brdf, GlslDialect::kCore330, 128).text;
+        for (const char* ours : {"\n#if", "\n#else", "\n#endif", "\n#include", "EFFECT_", "AREALAB_", "PATH_", "/*---"}) EXPECT_THAT(text, Not(HasSubstr(ours)));
+        EXPECT_NO_THROW(stranger::Compile(context->gl(), GL_FRAGMENT_SHADER, text));
+        if (std::string(name) == "gloss") {
+          const std::string es = ExportShader(library, one, effects, scene.brdf, GlslDialect::kEs300, 1).text;
+          const ProcessResult glslang = RunProcess({"glslangValidator", "--stdin", "-S", "frag"}, {}, es);
+          ASSERT_TRUE(glslang.started) << "glslangValidator (Debian: glslang-tools)";
+          EXPECT_EQ(glslang.status, 0) << glslang.messages;
+        }
+      }
+    }
+  }
+}
+
+// Functions that nothing calls are gone: each declared function is called or is main.
+TEST(Export, OnlyWhatIsUsedStays) {
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  const Scene scene = LoadScene(FindScene("gloss"));
+  const ExportedShader shader = ExportShader(library, ParseVariant(techniques, "ltc"), SceneEffects(scene), scene.brdf, GlslDialect::kCore330, 1);
+  EXPECT_THAT(shader.text, Not(HasSubstr("SphereView")));
+  EXPECT_THAT(shader.text, Not(HasSubstr("light_count")));
+  EXPECT_THAT(shader.text, HasSubstr("[Heitz et al. 2016]"));
+  EXPECT_THAT(shader.text, HasSubstr("#define MAX_LIGHTS 1\n"));
+  EXPECT_THAT(shader.tables, testing::ElementsAre("ltc_matrix", "ltc_terms"));
+  const ExportedShader shapes =
+      ExportShader(library, ParseVariant(techniques, "ltc+effects=all"), SceneEffects(scene), scene.brdf, GlslDialect::kCore330, 8);
+  EXPECT_THAT(shapes.text, HasSubstr("SphereView"));
+  EXPECT_THAT(shapes.text, HasSubstr("light_count"));
+}
+
+TEST(Export, HlslCompilesBack) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"ltc", "point", "oat"}) {
+    ExportTo(folder.path(), "gloss", name);
+    const ProcessResult back = RunProcess({"glslangValidator", "-D", "-V", "-e", "main", "-S", "frag", "-o", "/dev/null", (folder.path() / (name + ".hlsl")).string()}, {}, {});
+    EXPECT_EQ(back.status, 0) << name << ": " << back.messages;
+  }
+}
+
+TEST(Export, MistakesAreALine) {
+  const TemporaryFolder folder;
+  const auto fails = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {AREALAB_PROGRAM, "export", "--out", folder.path().string()});
+    const ProcessResult result = RunProcess(arguments, {}, {});
+    EXPECT_EQ(result.status, 2);
+    return result.messages;
+  };
+  EXPECT_THAT(fails({}), HasSubstr("expected either a scene or --effects"));
+  EXPECT_THAT(fails({"--effects", "rectangle,glow"}), HasSubstr("unknown effect \"glow\"; expected of rectangle"));
+  EXPECT_THAT(fails({"bulbs", "--technique", "light_field"}), HasSubstr("light_field shades rectangles"));
+  const ProcessResult none = RunProcess({AREALAB_PROGRAM, "export", "gloss", "--out", folder.path().string()}, {{"PATH", "/nowhere"}}, {});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.messages, HasSubstr("expected the Debian package glslang-tools"));
+}
+
+// Where AREALAB_EXPORT_SAMPLE names a folder: what export_webgl_test.py draws in a browser and what it should see.
+TEST(Export, WritesTheSampleForTheBrowserTest) {
+  const char* folder = std::getenv("AREALAB_EXPORT_SAMPLE");
+  if (!folder) return;  // only that test asks
+  const auto context = CreateContext(ContextKind::kOsmesa);
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  ExportTo(folder, "gloss", "ltc");
+  const Drawn drawn = DrawOneLight(context->gl(), library, ParseVariant(techniques, "ltc"), LoadScene(FindScene("gloss")));
+  nlohmann::json sample = {{"width", drawn.input.width}, {"height", drawn.input.height}, {"view_position", drawn.input.view_position},
+                           {"light_rows", drawn.input.light_rows}, {"gbuffer", drawn.input.gbuffer}};
+  for (const auto& [name, lobe] : {std::pair("diffuse", &drawn.image.diffuse), std::pair("specular", &drawn.image.specular)}) {
+    for (const glm::vec3& radiance : *lobe) {
+      for (int c = 0; c < 3; ++c) sample["expected"][name].push_back(radiance[c]);
+    }
+  }
+  std::ofstream(std::filesystem::path(folder) / "sample.json") << sample;
+}
+
+}  // namespace
+}  // namespace arealab
