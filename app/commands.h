@@ -40,6 +40,7 @@ void AddRender(CLI::App& app, int& status);
 void AddList(CLI::App& app, int& status);
 void AddFit(CLI::App& app, int& status);
 void AddCheck(CLI::App& app, int& status);
+void AddBake(CLI::App& app, int& status);
 void AddCost(CLI::App& app, int& status);
 void AddSweep(CLI::App& app, int& status, const std::string& command_line);
 void AddView(CLI::App& app, int& status);

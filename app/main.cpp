@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   arealab::AddList(app, status);
   arealab::AddFit(app, status);
   arealab::AddCheck(app, status);
+  arealab::AddBake(app, status);
   arealab::AddCost(app, status);
   arealab::AddSweep(app, status, CommandLine(argc, argv));
   arealab::AddView(app, status);

@@ -4,6 +4,8 @@
 #include "app/progress.h"
 #include "compare/harness.h"
 #include "compare/image_files.h"
+#include "compare/aperture_cache.h"
+#include "compare/shadowed_truth.h"
 #include "compare/truth_cache.h"
 #include "scenes/error.h"
 
@@ -61,7 +63,7 @@ void RunRender(const RenderArguments& arguments) {
   const Variant variant = truth ? Variant() : ParseVariant(techniques, arguments.technique);
   const std::map<std::string, double> knobs =
       truth ? std::map<std::string, double>() : ParseKnobs(arguments.knobs, *variant.technique);
-  const Scene scene = LoadScene(FindScene(arguments.scene));
+  Scene scene = LoadScene(FindScene(arguments.scene));
   if (!truth) {
     if (const auto reason = WhyUnsupported(variant, scene)) {
       throw InputError(fmt::format("{}: {}; expected a technique that supports the scene", scene.file.string(), *reason));
@@ -69,6 +71,10 @@ void RunRender(const RenderArguments& arguments) {
   }
 
   const std::unique_ptr<Context> context = arguments.common.MakeContext();
+  {
+    Progress progress;
+    CachedApertures(scene, arguments.common.CacheFolder(), [&](double fraction) { progress.Show("apertures", fraction); });
+  }
   Renderer renderer(context->gl(), library);
   const SurfacePixels& pixels = renderer.DrawScene(scene, arguments.common.Size());
   RadianceImage image;
@@ -78,6 +84,11 @@ void RunRender(const RenderArguments& arguments) {
     options.tolerance = arguments.tolerance;
     options.progress = [&](double fraction) { progress.Show("truth", fraction); };
     image = CachedTruth(scene, pixels, options, arguments.common.CacheFolder()).radiance;
+    if (scene.aperture) {
+      ShadowOptions shadow_options;
+      shadow_options.progress = [&](double fraction) { progress.Show("truth with shadows", fraction); };
+      image = CachedShadowedTruth(scene, pixels, image, options, shadow_options, arguments.common.CacheFolder()).radiance;
+    }
   } else {
     image = renderer.Shade(variant, arguments.fp64 ? Precision::kDouble : Precision::kFloat, knobs);
   }

@@ -15,8 +15,10 @@
 #include "compare/harness.h"
 #include "compare/image_files.h"
 #include "compare/metrics.h"
+#include "compare/shadowed_truth.h"
 #include "compare/truth.h"
 #include "glsl/renderer.h"
+#include "scenes/bake.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -296,7 +298,8 @@ class Checker {
   CheckResult Run() {
     std::set<std::string> names;
     for (std::size_t s = 0; s < options_.scenes.size(); ++s) {
-      const Scene scene = LoadScene(options_.scenes[s]);
+      Scene scene = LoadScene(options_.scenes[s]);
+      if (scene.aperture) BakeApertures(scene);
       if (!names.insert(scene.name).second) {
         throw InputError(fmt::format("{}: a second scene of the name \"{}\"; expected names that differ",
                                      options_.scenes[s].string(), scene.name));
@@ -358,7 +361,9 @@ class Checker {
     if (variants.empty()) return;
     Report(scene, "truth", 0.0);
     const SurfacePixels& pixels = renderer_.DrawScene(scene, options_.size);
-    const auto truth = std::make_shared<const RadianceImage>(ComputeTruth(scene, pixels).radiance);
+    RadianceImage unshadowed = ComputeTruth(scene, pixels).radiance;
+    const auto truth = std::make_shared<const RadianceImage>(
+        scene.aperture ? ComputeShadowedTruth(scene, pixels, unshadowed, {}).radiance : std::move(unshadowed));
     const auto emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(scene, pixels));
     const std::vector<fs::path> built_in = BuiltInScenes();
     const bool is_built_in = std::find(built_in.begin(), built_in.end(), file) != built_in.end();

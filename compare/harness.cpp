@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "compare/aperture_cache.h"
 #include "compare/flip.h"
 #include "compare/metrics.h"
 #include "compare/timing.h"
@@ -187,10 +188,11 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
   tbb::task_group measuring;
   const double scene_share = 1.0 / static_cast<double>(std::max<std::size_t>(options.scenes.size(), 1));
   for (std::size_t s = 0; s < options.scenes.size(); ++s) {
-    const Scene scene = LoadScene(options.scenes[s]);
+    Scene scene = LoadScene(options.scenes[s]);
     const auto report = [&](const std::string& what, double fraction) {
       if (options.progress) options.progress(scene.name + ": " + what, (static_cast<double>(s) + fraction) * scene_share);
     };
+    CachedApertures(scene, options.cache, [&](double fraction) { report("apertures", 0.1 * fraction); });
     report("G-buffer", 0.0);
     const SurfacePixels& pixels = renderer.DrawScene(scene, options.size);
 
@@ -217,8 +219,17 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     result.truth_seconds = truth.seconds;
     result.truth_cached = truth.cached;
     result.truth = std::make_shared<const RadianceImage>(truth.radiance);
-    result.shadow = Describe(shadowed, truth.radiance);
-    result.lit_pixels = CountLit(truth.radiance);
+    if (scene.aperture) {
+      // Every variant takes its visibility from the apertures: they are ranked against truth that has it too.
+      result.truth_shadowed = true;
+      result.truth = std::make_shared<const RadianceImage>(shadowed.radiance);
+      result.truth_relative_error = shadowed.p99_error;
+      result.truth_seconds = truth.seconds + shadowed.seconds;
+      result.truth_cached = truth.cached && shadowed.cached;
+    } else {
+      result.shadow = Describe(shadowed, truth.radiance);
+    }
+    result.lit_pixels = CountLit(*result.truth);
     result.emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(scene, pixels));
 
     for (std::size_t v = 0; v < options.variants.size(); ++v) {

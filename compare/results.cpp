@@ -101,6 +101,7 @@ Json SceneJson(const SceneResult& scene) {
   json["truth"] = {{"relative_error", Number(scene.truth_relative_error)},
                    {"seconds", Number(scene.truth_seconds)},
                    {"cached", scene.truth_cached},
+                   {"visibility", scene.truth_shadowed},
                    {"shadow", ShadowJson(scene.shadow)}};
   json["variants"] = Json::array();
   for (const VariantResult& variant : scene.variants) json["variants"].push_back(VariantJson(variant));

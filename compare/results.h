@@ -98,6 +98,7 @@ struct SceneResult {
   int lit_pixels = 0;                // that truth lights
   double truth_relative_error = kNotMeasured, truth_seconds = kNotMeasured;
   bool truth_cached = false;
+  bool truth_shadowed = false;  // truth and variants have visibility; then `shadow` is empty
   std::shared_ptr<const RadianceImage> truth;
   std::optional<ShadowResult> shadow;
   std::shared_ptr<const std::vector<glm::vec3>> emission;  // radiance of emitters seen directly, per pixel

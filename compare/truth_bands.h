@@ -21,6 +21,10 @@ struct TruthBand {
 
 // One surface pixel as every integral over lights sees it; nothing for other pixels and for faces turned away
 // from the viewer, which shade black.
+class ContentHash;
+// Positions, normals and indices.
+void AddTriangles(ContentHash& hash, const Scene& scene);
+
 struct ShadedPixel {
   ShadingPoint point;
   glm::dvec3 albedo, f0;

@@ -143,6 +143,18 @@ void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels
 
 }  // namespace
 
+void AddTriangles(ContentHash& hash, const Scene& scene) {
+  for (const Mesh& mesh : scene.meshes) {
+    hash.Value(mesh.vertices.size());
+    hash.Value(mesh.indices.size());
+    for (const Vertex& vertex : mesh.vertices) {
+      hash.Bytes(&vertex.position, sizeof vertex.position);
+      hash.Bytes(&vertex.normal, sizeof vertex.normal);
+    }
+    hash.Bytes(mesh.indices.data(), mesh.indices.size() * sizeof mesh.indices[0]);
+  }
+}
+
 std::string TruthKey(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
   ContentHash hash;
   AddTruth(hash, scene, pixels, options);
@@ -155,15 +167,7 @@ std::string ShadowKey(const Scene& scene, const SurfacePixels& pixels, const Tru
   AddTruth(hash, scene, pixels, truth_options);
   hash.Value(kShadowVersion);
   hash.Value(options.tolerance);
-  for (const Mesh& mesh : scene.meshes) {
-    hash.Value(mesh.vertices.size());
-    hash.Value(mesh.indices.size());
-    for (const Vertex& vertex : mesh.vertices) {
-      hash.Bytes(&vertex.position, sizeof vertex.position);
-      hash.Bytes(&vertex.normal, sizeof vertex.normal);
-    }
-    hash.Bytes(mesh.indices.data(), mesh.indices.size() * sizeof mesh.indices[0]);
-  }
+  AddTriangles(hash, scene);
   return hash.Name();
 }
 

@@ -9,6 +9,9 @@ layout(location = 0) in vec3 surface_position;  // m, world
 layout(location = 1) in vec3 surface_normal;
 uniform vec4 surface_material;  // diffuse albedo; w: roughness
 uniform vec4 surface_f0;
+#if EFFECT_APERTURE
+uniform vec4 surface_aperture;
+#endif
 
 void main() {
   Surface surface;
@@ -18,6 +21,9 @@ void main() {
   surface.alpha = surface_material.w * surface_material.w;
   surface.diffuse_albedo = surface_material.xyz;
   surface.f0 = surface_f0.xyz;
+#if EFFECT_APERTURE
+  surface.aperture = surface_aperture;
+#endif
   Radiance radiance = ShadeLight(surface, LoadLight(0), normalize(ViewPosition() - surface_position));
   vec3 sum = vec3(0.0);
 #if EFFECT_DIFFUSE

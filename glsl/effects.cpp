@@ -207,6 +207,11 @@ class Analysis {
     return {false, "every material is grey"};
   }
 
+  Verdict Aperture() const {
+    if (scene_.aperture) return {true, "the scene asks for visibility, baked into apertures"};
+    return {false, "the scene asks for no visibility"};
+  }
+
   Verdict ManyLights() const {
     if (lights_.size() > 1) return {true, fmt::format("{} lights emit", lights_.size())};
     return {false, lights_.empty() ? "no light emits" : "one light emits"};
@@ -321,6 +326,7 @@ constexpr Rule kRules[] = {
     {"fresnel", [](Analysis& scene) { return scene.Fresnel(); }},
     {"light_color", [](Analysis& scene) { return scene.LightColor(); }},
     {"material_color", [](Analysis& scene) { return scene.MaterialColor(); }},
+    {"aperture", [](Analysis& scene) { return scene.Aperture(); }},
     {"many_lights", [](Analysis& scene) { return scene.ManyLights(); }},
 };
 

@@ -107,6 +107,8 @@ class Expander {
       if (std::none_of(effects.begin(), effects.end(), named)) EmitHost(fmt::format("#define {} 0", path));
     }
     if (!variant_.technique) return;
+    const std::vector<std::string>& taken = variant_.technique->effects;
+    EmitHost(fmt::format("#define TECHNIQUE_TAKES_APERTURE {}", std::ranges::count(taken, "aperture")));
     for (const Option& option : variant_.technique->options) {
       for (const Choice& choice : option.choices) {
         const int chosen = variant_.options.at(option.name) == choice.name ? 1 : 0;

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "scenes/bake.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -151,6 +152,7 @@ struct GBuffer::Geometry {
   using TextureSet = std::array<std::shared_ptr<const Image>, 3>;  // colour, metalness and roughness, normals
 
   std::vector<Vertex> vertices;
+  std::vector<glm::vec4> apertures;    // one per vertex, or none at all
   std::vector<std::uint32_t> indices;  // into `vertices`
   std::vector<Range> ranges;           // one per draw
   std::vector<DrawEntry> draws;
@@ -204,13 +206,21 @@ struct GBuffer::Geometry {
 
 GBuffer::GBuffer(const GladGLContext& gl, const ShaderLibrary& library)
     : gl_(gl),
+      library_(library),
       coverage_program_(gl, Expand(library, "coverage.vert", {}, {}, Precision::kFloat),
                         Expand(library, "coverage.frag", {}, {}, Precision::kFloat)),
-      resolve_program_(gl, Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat),
-                       Expand(library, "gbuffer.frag", {}, {}, Precision::kFloat)),
       vertex_array_(MakeVertexArray(gl)) {
   gl.VertexArrayAttribFormat(vertex_array_.id(), 0, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, position));
   gl.VertexArrayAttribBinding(vertex_array_.id(), 0, 0);
+}
+
+const Program& GBuffer::ResolveProgram(bool apertures) {
+  std::optional<Program>& program = resolve_programs_[apertures ? 1 : 0];
+  if (!program) {
+    program.emplace(gl_, Expand(library_, "fullscreen.vert", {}, {}, Precision::kFloat),
+                    Expand(library_, "gbuffer.frag", {}, {{"EFFECT_APERTURE", apertures ? 1 : 0}}, Precision::kFloat));
+  }
+  return *program;
 }
 
 void GBuffer::Allocate(glm::ivec2 size) {
@@ -239,6 +249,7 @@ void GBuffer::Allocate(glm::ivec2 size) {
   position_ = MakeTexture(gl_, GL_RGBA32F, 1, size);
   normal_ = MakeTexture(gl_, GL_RGBA32F, 1, size);
   base_color_ = MakeTexture(gl_, GL_RGBA32F, 1, size);
+  aperture_ = {};
   const GLuint fbo = framebuffer_.id();
   gl_.NamedFramebufferTexture(fbo, GL_COLOR_ATTACHMENT0, position_.id(), 0);
   gl_.NamedFramebufferTexture(fbo, GL_COLOR_ATTACHMENT1, normal_.id(), 0);
@@ -260,6 +271,11 @@ void GBuffer::Allocate(glm::ivec2 size) {
 
 GBuffer::Geometry GBuffer::Gather(const Scene& scene, const glm::dvec3& camera) {
   Geometry geometry;
+  if (HasApertures(scene)) {
+    for (const Mesh& mesh : scene.meshes) {
+      geometry.apertures.insert(geometry.apertures.end(), mesh.apertures.begin(), mesh.apertures.end());
+    }
+  }
   for (const Mesh& mesh : scene.meshes) {
     geometry.Add(mesh, scene.materials.at(static_cast<std::size_t>(mesh.material)), 1.0f);
   }
@@ -270,6 +286,7 @@ GBuffer::Geometry GBuffer::Gather(const Scene& scene, const glm::dvec3& camera) 
     const float number = 2.0f + static_cast<float>(i);
     geometry.Add(EmitterMesh(light), {}, lit ? number : -number);
   }
+  if (!geometry.apertures.empty()) geometry.apertures.resize(geometry.vertices.size());  // emitters have none
   return geometry;
 }
 
@@ -298,6 +315,9 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
   const GlObject indices =
       MakeBuffer(gl_, std::max<std::size_t>(geometry.indices.size(), 1) * sizeof(std::uint32_t),
                  geometry.indices.empty() ? nullptr : geometry.indices.data());
+  const GlObject apertures =
+      MakeBuffer(gl_, std::max<std::size_t>(geometry.apertures.size(), 1) * sizeof(glm::vec4),
+                 geometry.apertures.empty() ? nullptr : geometry.apertures.data());
   const GlObject draws = MakeBuffer(gl_, std::max<std::size_t>(geometry.draws.size(), 1) * sizeof(DrawEntry),
                                     geometry.draws.empty() ? nullptr : geometry.draws.data());
   gl_.VertexArrayVertexBuffer(vertex_array_.id(), 0, vertices.id(), 0, sizeof(Vertex));
@@ -308,29 +328,27 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
   gl_.BindTextureUnit(4, vertex_texels.id());
   gl_.BindTextureUnit(5, index_texels.id());
   gl_.BindTextureUnit(6, draw_texels.id());
-  DrawCoverage(geometry, size);
+  const GlObject aperture_texels = MakeBufferTexture(gl_, GL_RGBA32F, apertures);
+  gl_.BindTextureUnit(7, aperture_texels.id());
+  DrawCoverage(geometry);
   Resolve(geometry);
   gl_.UseProgram(0);  // a program in use would outlive its object
   gl_.BindVertexArray(0);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
 
   pixels_.view_position = glm::vec3(view.position);
+  pixels_.aperture.assign(geometry.apertures.empty() ? 0 : 1, glm::vec4(0.0f));
   ReadBack();
   return pixels_;
 }
 
-void GBuffer::DrawCoverage(const Geometry& geometry, glm::ivec2 size) {
+void GBuffer::DrawCoverage(const Geometry& geometry) {
   const View& view = geometry.view;
   const Program& program = coverage_program_;
   program.Set("view_position", glm::vec3(view.position));
   program.Set("view_from_world", glm::mat3(glm::transpose(glm::dmat3(view.right, view.up, view.forward))));
   program.Set("focal", glm::vec2(1.0 / view.half_extent));
   program.Set("near", static_cast<float>(geometry.near));
-  resolve_program_.Set("view_position", view.position);
-  resolve_program_.Set("ray_forward", view.forward);
-  resolve_program_.Set("ray_right", view.right * view.half_extent.x);
-  resolve_program_.Set("ray_up", view.up * view.half_extent.y);
-  resolve_program_.Set("size", glm::vec2(size));
 
   const GLuint fbo = coverage_framebuffer_.id();
   gl_.BindFramebuffer(GL_FRAMEBUFFER, fbo);
@@ -368,10 +386,24 @@ void GBuffer::Resolve(const Geometry& geometry) {
   }
   earlier.clear();
 
+  const bool apertures = !geometry.apertures.empty();
+  if (apertures && aperture_.id() == 0) aperture_ = MakeTexture(gl_, GL_RGBA32F, 1, {pixels_.width, pixels_.height});
+  const std::array<GLenum, 4> targets{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
+                                      GL_COLOR_ATTACHMENT3};
+  const GLint target_count = apertures ? 4 : 3;
+  gl_.NamedFramebufferTexture(framebuffer_.id(), GL_COLOR_ATTACHMENT3, apertures ? aperture_.id() : 0, 0);
+  gl_.NamedFramebufferDrawBuffers(framebuffer_.id(), target_count, targets.data());
+  const Program& program = ResolveProgram(apertures);
+  const View& view = geometry.view;
+  program.Set("view_position", view.position);
+  program.Set("ray_forward", view.forward);
+  program.Set("ray_right", view.right * view.half_extent.x);
+  program.Set("ray_up", view.up * view.half_extent.y);
+  program.Set("size", glm::vec2(pixels_.width, pixels_.height));
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  gl_.UseProgram(resolve_program_.id());
+  gl_.UseProgram(program.id());
   const std::array<float, 4> background{};
-  for (GLint i = 0; i < 3; ++i)
+  for (GLint i = 0; i < target_count; ++i)
     gl_.ClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, i, background.data());
   gl_.BindTextureUnit(0, coverage_.id());
   for (std::size_t i = 0; i < geometry.texture_sets.size(); ++i) {
@@ -379,7 +411,7 @@ void GBuffer::Resolve(const Geometry& geometry) {
       const auto& image = geometry.texture_sets[i][k];
       gl_.BindTextureUnit(static_cast<GLuint>(1 + k), image ? Upload(image) : 0);
     }
-    resolve_program_.Set("texture_set", static_cast<int>(i));
+    program.Set("texture_set", static_cast<int>(i));
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
   }
 }
@@ -417,6 +449,7 @@ void GBuffer::ReadBack() {
   read(position_, pixels_.position);
   read(normal_, pixels_.normal);
   read(base_color_, pixels_.base_color);
+  if (!pixels_.aperture.empty()) read(aperture_, pixels_.aperture);
 }
 
 }  // namespace arealab

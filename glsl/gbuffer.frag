@@ -6,6 +6,10 @@ layout(location = 0) out vec4 out_position;    // m, world; w: what it is, see D
 layout(location = 1) out vec4 out_normal;      // unit shading normal; w: artist's roughness
 layout(location = 2) out vec4 out_base_color;  // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
+#if EFFECT_APERTURE
+layout(location = 3) out vec4 out_aperture;    // unit axis; w: versine
+#endif
+
 // One draw, as gbuffer.cpp writes it.
 struct Draw {
   vec4 base_color_metalness;
@@ -25,6 +29,9 @@ struct Corner {
 layout(binding = 4) uniform samplerBuffer vertices;  // a Corner in three texels
 layout(binding = 5) uniform usamplerBuffer indices;
 layout(binding = 6) uniform samplerBuffer draws;     // a Draw in three texels
+#if EFFECT_APERTURE
+layout(binding = 7) uniform samplerBuffer apertures;  // a vertex's cap: unit axis, versine
+#endif
 
 layout(binding = 0) uniform usampler2D coverage;
 layout(binding = 1) uniform sampler2D base_color_texture;
@@ -50,6 +57,10 @@ Corner CornerAt(uint i) {
   vec4 c = texelFetch(vertices, at + 2);
   return Corner(a.xyz, vec3(a.w, b.xy), vec4(b.zw, c.xy), c.zw);
 }
+
+#if EFFECT_APERTURE
+vec4 ApertureAt(uint i) { return texelFetch(apertures, int(texelFetch(indices, int(i)).x)); }
+#endif
 
 // A triangle: one corner and the edges to the two others.
 struct Triangle {
@@ -156,6 +167,11 @@ void main() {
     }
   }
 
+#if EFFECT_APERTURE
+  vec4 cap = float(weight_a) * ApertureAt(first) + float(weight.x) * ApertureAt(first + 1u) + float(weight.y) * ApertureAt(first + 2u);
+  float cap_length = length(cap.xyz);
+  out_aperture = vec4(cap_length > 0.0 ? cap.xyz / cap_length : vec3(normal), cap.w);
+#endif
   out_position = vec4(vec3(position), draw.kind);
   out_normal = vec4(vec3(normal), clamp(rough, 0.0, 1.0));
   out_base_color = vec4(color, clamp(metal, -1.0, 1.0));

@@ -1,9 +1,11 @@
 // The G-buffer: a scene rasterised once into float textures, and the host's copy of them.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "glsl/gl_objects.h"
 #include "glsl/pixels.h"
@@ -25,24 +27,28 @@ class GBuffer {
   GLuint position() const { return position_.id(); }  // textures, RGBA32F, as SurfacePixels has them
   GLuint normal() const { return normal_.id(); }
   GLuint base_color() const { return base_color_.id(); }
+  GLuint aperture() const { return pixels_.aperture.empty() ? 0 : aperture_.id(); }
 
  private:
   struct Geometry;  // the scene's triangles and what is drawn of them
 
   void Allocate(glm::ivec2 size);
   Geometry Gather(const Scene& scene, const glm::dvec3& camera);
-  void DrawCoverage(const Geometry& geometry, glm::ivec2 size);
+  void DrawCoverage(const Geometry& geometry);
+  const Program& ResolveProgram(bool apertures);
   void Resolve(const Geometry& geometry);
   GLuint Upload(const std::shared_ptr<const Image>& image);
   void ReadBack();
 
   const GladGLContext& gl_;
+  const ShaderLibrary& library_;
   Program coverage_program_;
-  Program resolve_program_;
+  // Without apertures and with them; the latter is compiled when a scene first has some.
+  std::array<std::optional<Program>, 2> resolve_programs_;
   GlObject vertex_array_;
   GlObject coverage_framebuffer_, framebuffer_;
   GlObject coverage_, depth_;
-  GlObject position_, normal_, base_color_;
+  GlObject position_, normal_, base_color_, aperture_;
   std::map<std::shared_ptr<const Image>, GlObject> textures_;  // of the scene drawn last
   SurfacePixels pixels_;
 };

@@ -4,11 +4,19 @@
 #include "lights.glsl"
 #include "lit.glsl"
 #include "technique"
+#if EFFECT_APERTURE && !TECHNIQUE_TAKES_APERTURE
+#include "aperture.glsl"
+#endif
 
 void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
   Light light = LoadLight(i);
   if (!Lit(FaceLight(light, surface.position))) return;
   Radiance radiance = ShadeLight(surface, light, to_view);
+#if EFFECT_APERTURE && !TECHNIQUE_TAKES_APERTURE
+  float visible = ApertureShare(surface, light);
+  radiance.diffuse *= visible;
+  radiance.specular *= visible;
+#endif
   // What is not added here is dead code, and the compiler drops it from the technique.
 #if EFFECT_DIFFUSE
   diffuse += radiance.diffuse;
@@ -47,6 +55,10 @@ void main() {
       surface.alpha = max(normal.w * normal.w, kMinAlpha);
       surface.diffuse_albedo = base_color.rgb * (1.0 - metalness);
       surface.f0 = mix(vec3(0.04), base_color.rgb, metalness);
+#if EFFECT_APERTURE
+      surface.aperture = FetchAperture(pixel);
+      if (surface.aperture.xyz == vec3(0.0)) surface.aperture = vec4(surface.normal, 1.0);
+#endif
 #if EFFECT_MANY_LIGHTS
       for (int i = 0; i < light_count; ++i) AddLight(i, surface, to_view, diffuse, specular);
 #else

@@ -6,6 +6,9 @@
 dvec4 FetchPosition(ivec2 pixel) { return dvec4(texelFetch(gbuffer_position, pixel, 0)); }
 dvec4 FetchNormal(ivec2 pixel) { return dvec4(texelFetch(gbuffer_normal, pixel, 0)); }
 dvec4 FetchBaseColor(ivec2 pixel) { return dvec4(texelFetch(gbuffer_base_color, pixel, 0)); }
+#if EFFECT_APERTURE
+dvec4 FetchAperture(ivec2 pixel) { return dvec4(texelFetch(gbuffer_aperture, pixel, 0)); }
+#endif
 dvec3 ViewPosition() { return dvec3(view_position); }
 dvec4 LightRow(int light, int row) { return dvec4(light_rows[light * LIGHT_ROWS + row]); }
 

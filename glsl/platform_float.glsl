@@ -5,6 +5,9 @@
 vec4 FetchPosition(ivec2 pixel) { return texelFetch(gbuffer_position, pixel, 0); }
 vec4 FetchNormal(ivec2 pixel) { return texelFetch(gbuffer_normal, pixel, 0); }
 vec4 FetchBaseColor(ivec2 pixel) { return texelFetch(gbuffer_base_color, pixel, 0); }
+#if EFFECT_APERTURE
+vec4 FetchAperture(ivec2 pixel) { return texelFetch(gbuffer_aperture, pixel, 0); }
+#endif
 vec3 ViewPosition() { return view_position; }
 vec4 LightRow(int light, int row) { return light_rows[light * LIGHT_ROWS + row]; }
 

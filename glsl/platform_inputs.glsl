@@ -5,6 +5,10 @@ layout(binding = 0) uniform sampler2D gbuffer_position;    // m, world; w: 0 bac
 layout(binding = 1) uniform sampler2D gbuffer_normal;      // unit; w: artist's roughness
 layout(binding = 2) uniform sampler2D gbuffer_base_color;  // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
+#if EFFECT_APERTURE
+layout(binding = 14) uniform sampler2D gbuffer_aperture;   // unit axis; w: versine; 0 where nothing was baked
+#endif
+
 #define MAX_LIGHTS 256
 #define LIGHT_ROWS 8
 layout(std140, binding = 0) uniform LightBlock {

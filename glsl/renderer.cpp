@@ -18,6 +18,7 @@
 namespace arealab {
 namespace {
 
+constexpr GLuint kApertureUnit = 14;  // see glsl/platform_inputs.glsl
 constexpr GLuint kFirstTableUnit = 3;  // after the G-buffer's three, see glsl/platform_inputs.glsl
 
 }  // namespace
@@ -168,6 +169,7 @@ void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) const {
   gl.BindTextureUnit(0, gbuffer.position());
   gl.BindTextureUnit(1, gbuffer.normal());
   gl.BindTextureUnit(2, gbuffer.base_color());
+  gl.BindTextureUnit(kApertureUnit, gbuffer.aperture());
   for (std::size_t i = 0; i < pass.tables.size(); ++i) {
     gl.BindTextureUnit(kFirstTableUnit + static_cast<GLuint>(i), pass.tables[i]);
   }

@@ -10,6 +10,9 @@ struct Surface {
   float alpha;          // roughness², at least kMinAlpha
   vec3 diffuse_albedo;  // base · (1 − metalness)
   vec3 f0;              // reflectance at normal incidence: mix(0.04, base, metalness)
+#if EFFECT_APERTURE
+  vec4 aperture;        // the cap of directions that meet no surface: unit axis; w: versine, 1 − cos of its radius
+#endif
 };
 
 // Computed once per light on the host, in double, then rounded; the same for every technique.

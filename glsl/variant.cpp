@@ -166,6 +166,7 @@ Variant DefaultVariant(const Technique& technique) {
 Variant WithAllEffects(Variant variant) {
   const Technique& technique = *variant.technique;
   for (const std::string& effect : EffectNames()) variant.effects[effect] = true;
+  variant.effects.erase("aperture");
   for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
     if (std::ranges::find(technique.shapes, shape) == technique.shapes.end()) variant.effects.erase(Name(shape));
   }

@@ -38,6 +38,7 @@ struct Quantity {
 // Beyond 1e7 m (an Earth's radius) single-precision positions are worse than a metre; below 1e-6 m a light's
 // solid angle underflows. 1e12 is a thousand times the Sun's radiance in cd/m² (1.6e9).
 constexpr Quantity kCoordinate{-1e7, 1e7, "metres, at most 1e7 either way"};
+constexpr Quantity kApertureRays{16.0, 65536.0, "a whole number of rays per vertex, 16 to 65536"};
 constexpr Quantity kLength{1e-6, 1e7, "a positive length in metres, 1e-6 to 1e7"};
 constexpr Quantity kUnitInterval{0.0, 1.0, "a number from 0 to 1"};
 constexpr Quantity kDirection{-1e7, 1e7, "three numbers that are not all zero"};
@@ -265,7 +266,7 @@ class SceneReader {
                  fmt::format("{}; expected valid TOML", error.description()));
     }
     const Fields root(file_, root_table, "the scene");
-    root.Allow({"units", "exposure", "brdf", "camera", "material", "surface", "light"});
+    root.Allow({"units", "exposure", "brdf", "aperture", "camera", "material", "surface", "light"});
     scene_.units = root.Word("units", {"radiometric", "photometric"}, "radiometric") == "photometric"
                        ? Units::kPhotometric
                        : Units::kRadiometric;
@@ -274,6 +275,7 @@ class SceneReader {
     for (const Brdf brdf : kBrdfs) brdfs.emplace_back(Name(brdf));
     const std::string brdf = root.Word("brdf", brdfs, Name(Brdf::kGgx));
     scene_.brdf = kBrdfs[std::find(brdfs.begin(), brdfs.end(), brdf) - brdfs.begin()];
+    ReadAperture(root);
     ReadCamera(root);
     for (const Fields& fields : Tables(root, "material")) ReadMaterial(fields);
     const std::vector<Fields> surfaces = Tables(root, "surface");
@@ -307,6 +309,26 @@ class SceneReader {
       tables.emplace_back(file_, *table, std::move(title));
     }
     return tables;
+  }
+
+  void ReadAperture(const Fields& root) {
+    const toml::node* node = root.Find("aperture");
+    if (!node) return;
+    const toml::table* table = node->as_table();
+    if (!table) root.FailType(*node, "aperture", "a table [aperture]");
+    const Fields fields(file_, *table, "[aperture]");
+    fields.Allow({"rays", "cell"});
+    ApertureSettings& settings = scene_.aperture.emplace();
+    const double rays = fields.Number("rays", kApertureRays, settings.rays);
+    settings.rays = static_cast<int>(rays);
+    if (settings.rays != rays) fields.Fail(*fields.Find("rays"), fmt::format("'rays' is not whole; expected {}", kApertureRays.expected));
+    if (fields.Find("cell")) settings.cell = fields.Number("cell", kLength, 0.0);
+  }
+
+  // The largest side of a plane's or box's cells, m.
+  double Cell() const {
+    const bool cut = scene_.aperture && scene_.aperture->cell > 0.0;
+    return cut ? scene_.aperture->cell : std::numeric_limits<double>::infinity();
   }
 
   void ReadCamera(const Fields& root) {
@@ -462,8 +484,8 @@ class SceneReader {
       return surface.Numbers<N>(surface.Require("size", fmt::format("an array of {} lengths in metres", N)),
                                 "size", kLength);
     };
-    if (type == "plane") mesh = MakePlane(size(std::integral_constant<int, 2>{}), placement);
-    if (type == "box") mesh = MakeBox(size(std::integral_constant<int, 3>{}), placement);
+    if (type == "plane") mesh = MakePlane(size(std::integral_constant<int, 2>{}), placement, Cell());
+    if (type == "box") mesh = MakeBox(size(std::integral_constant<int, 3>{}), placement, Cell());
     if (type == "sphere") {
       mesh = MakeSphere(surface.Number(surface.Require("radius", kLength.expected), "radius", kLength),
                         placement);

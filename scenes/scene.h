@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,7 @@ struct Vertex {
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise seen from outside
+  std::vector<glm::vec4> apertures;    // one per vertex once baked, see scenes/bake.h; else none
   int material = 0;                    // index into Scene::materials
 };
 
@@ -85,6 +87,12 @@ struct Camera {
   glm::dvec3 target{0.0};
   glm::dvec3 up{0.0, 0.0, 1.0};
   double vertical_fov = 0.7;  // radians
+};
+
+// What of the hemisphere each vertex sees is to be baked into a spherical cap [Oat 2006].
+struct ApertureSettings {
+  int rays = 512;     // directions per vertex
+  double cell = 0.0;  // m: planes and boxes are cut into cells of at most this size; 0: not at all
 };
 
 struct Scene {
@@ -98,6 +106,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Light> lights;
+  std::optional<ApertureSettings> aperture;  // where the scene calls for visibility
 };
 
 // Reads and checks a scene file. Throws InputError ("file:line: what; expected what").

@@ -11,6 +11,8 @@ namespace {
 // rad, from its corners and lies 1 − cos 0.0174 = 1.5e-4 radii deep.
 constexpr int kSphereRings = 128;
 
+constexpr double kMostCells = 2048.0;  // along a side of a rectangle
+
 // Cells around a ring: as wide as they are high, hence fewer towards the poles. The poles themselves repeat
 // their neighbour's, so that each cell there has a longitude.
 int SphereSegments(int ring) {
@@ -25,17 +27,28 @@ void AddVertex(Mesh& mesh, const Placement& placement, const glm::dvec3& positio
                            glm::vec4(glm::vec3(placement.rotation * tangent), 1.0f), glm::vec2(uv)});
 }
 
-// A rectangle about `center` that spans 2a × 2b and faces a × b.
+// A rectangle about `center` that spans 2a × 2b and faces a × b, in cells of at most `cell` on a side.
 void AddRectangle(Mesh& mesh, const Placement& placement, const glm::dvec3& center, const glm::dvec3& a,
-                  const glm::dvec3& b) {
+                  const glm::dvec3& b, double cell) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   const glm::dvec3 tangent = glm::normalize(a);
   const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
-  AddVertex(mesh, placement, center - a - b, normal, tangent, {0.0, 1.0});
-  AddVertex(mesh, placement, center + a - b, normal, tangent, {1.0, 1.0});
-  AddVertex(mesh, placement, center + a + b, normal, tangent, {1.0, 0.0});
-  AddVertex(mesh, placement, center - a + b, normal, tangent, {0.0, 0.0});
-  for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + corner);
+  const auto cells = [&](const glm::dvec3& half) {
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(2.0 * glm::length(half) / cell), 1.0, kMostCells));
+  };
+  const std::uint32_t columns = cells(a), rows = cells(b);
+  for (std::uint32_t j = 0; j <= rows; ++j) {
+    for (std::uint32_t i = 0; i <= columns; ++i) {
+      const double x = static_cast<double>(i) / columns, y = static_cast<double>(j) / rows;
+      AddVertex(mesh, placement, center + (2.0 * x - 1.0) * a + (2.0 * y - 1.0) * b, normal, tangent, {x, 1.0 - y});
+    }
+  }
+  for (std::uint32_t j = 0; j < rows; ++j) {
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const std::uint32_t near = first + j * (columns + 1) + i, far = near + columns + 1;
+      mesh.indices.insert(mesh.indices.end(), {near, near + 1, far + 1, near, far + 1, far});
+    }
+  }
 }
 
 }  // namespace
@@ -51,23 +64,23 @@ glm::dmat3 RotationFromDegrees(const glm::dvec3& degrees) {
   return about_z * about_y * about_x;
 }
 
-Mesh MakePlane(const glm::dvec2& size, const Placement& placement) {
+Mesh MakePlane(const glm::dvec2& size, const Placement& placement, double cell) {
   Mesh mesh;
-  AddRectangle(mesh, placement, glm::dvec3(0.0), {0.5 * size.x, 0.0, 0.0}, {0.0, 0.5 * size.y, 0.0});
+  AddRectangle(mesh, placement, glm::dvec3(0.0), {0.5 * size.x, 0.0, 0.0}, {0.0, 0.5 * size.y, 0.0}, cell);
   return mesh;
 }
 
-Mesh MakeBox(const glm::dvec3& size, const Placement& placement) {
+Mesh MakeBox(const glm::dvec3& size, const Placement& placement, double cell) {
   Mesh mesh;
   const glm::dvec3 x(0.5 * size.x, 0.0, 0.0);
   const glm::dvec3 y(0.0, 0.5 * size.y, 0.0);
   const glm::dvec3 z(0.0, 0.0, 0.5 * size.z);
-  AddRectangle(mesh, placement, x, y, z);
-  AddRectangle(mesh, placement, -x, -y, z);
-  AddRectangle(mesh, placement, y, -x, z);
-  AddRectangle(mesh, placement, -y, x, z);
-  AddRectangle(mesh, placement, z, x, y);
-  AddRectangle(mesh, placement, -z, x, -y);
+  AddRectangle(mesh, placement, x, y, z, cell);
+  AddRectangle(mesh, placement, -x, -y, z, cell);
+  AddRectangle(mesh, placement, y, -x, z, cell);
+  AddRectangle(mesh, placement, -y, x, z, cell);
+  AddRectangle(mesh, placement, z, x, y, cell);
+  AddRectangle(mesh, placement, -z, x, -y, cell);
   return mesh;
 }
 

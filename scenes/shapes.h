@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "scenes/scene.h"
 
@@ -17,11 +18,14 @@ struct Placement {
 // Turns about the world's x, then y, then z axis; degrees.
 glm::dmat3 RotationFromDegrees(const glm::dvec3& degrees);
 
-// size: m along local x and y; faces local +z. u runs along +x, v along -y.
-Mesh MakePlane(const glm::dvec2& size, const Placement& placement);
+// size: m along local x and y; faces local +z. u runs along +x, v along -y. cell: m, the largest side of the
+// rectangles that it is made of.
+Mesh MakePlane(const glm::dvec2& size, const Placement& placement,
+               double cell = std::numeric_limits<double>::infinity());
 
 // size: m along the local axes. Each face has the whole texture.
-Mesh MakeBox(const glm::dvec3& size, const Placement& placement);
+Mesh MakeBox(const glm::dvec3& size, const Placement& placement,
+             double cell = std::numeric_limits<double>::infinity());
 
 // radius: m. u is the longitude from local +x through +y, v the angle from local +z. The normal at a point p
 // of a triangle is the sphere's in the direction of p; the triangle lies at most 1.6e-4 radii inside the

@@ -28,7 +28,7 @@ const known = (v) => typeof v === "number" && Number.isFinite(v);
 const variantsOf = (scene) => scene.variants.filter((v) => v.stem);
 const variantNamed = (scene, name) => scene.variants.find((v) => v.name === name);
 const shadowOf = (scene) => scene.truth.shadow && scene.truth.shadow.stem ? scene.truth.shadow : null;
-const label = (scene, name) => name === TRUTH ? "truth" : name === SHADOWED ? "truth, shadowed" : (variantNamed(scene, name) || { short_name: name }).short_name || name;
+const label = (scene, name) => name === TRUTH ? (scene.truth.visibility ? "truth, with shadows" : "truth") : name === SHADOWED ? "truth, shadowed" : (variantNamed(scene, name) || { short_name: name }).short_name || name;
 
 // Percent with about three figures; `tight` for matrix cells, at most four characters.
 function percent(v, tight) {
@@ -410,6 +410,7 @@ function buildScene() {
       s.effects.length ? fact("effects", s.effects.map((e) => e.replace(/^EFFECT_/, "").toLowerCase().replaceAll("_", " ")).join(", ")) : null,
       fact("truth good to", known(s.truth.relative_error) ? percent(s.truth.relative_error) + " %" : "–"),
       fact("truth took", seconds(s.truth.seconds) + (s.truth.cached ? " (now from the cache)" : "")),
+      s.truth.visibility ? fact("visibility", "baked apertures, ranked against truth with shadows") : null,
       s.file ? fact("file", s.file) : null));
 
   // Controls
@@ -1176,7 +1177,7 @@ const TERMS = [
   ["Cycles", "Of a wave of 64 pixels on one SIMD of a GPU that is not here, as Mesa's compiler for it counts them: estimated from the instructions, nothing was run. Memory and divergence are not in them. The technique alone has its inputs as varyings and uniforms; the whole pass reads the G-buffer. Both are of a lit pixel."],
   ["Accuracy against cost", "The frontier joins the variants that no other beats in both error and cost. Over several scenes a mark is the geometric mean over the scenes that every variant shown can shade."],
   ["Published and default", "name@published is the form its author published; the plain name is the best form we know. Both are shown, so that nobody is judged by our changes or robbed of theirs."],
-  ["Emitters", "Lights seen directly are added to the pictures and are part of no metric and no map. Techniques cast no shadows, and neither does the truth they are ranked against."],
+  ["Emitters", "Lights seen directly are added to the pictures and are part of no metric and no map. Techniques cast no shadows, and neither does the truth they are ranked against, but where a scene asks for apertures: there both have visibility."],
   ["Truth, shadowed", "What the lights do past the scene's surfaces, by rays: the unshadowed integrals times the visible share. Lights hide nothing themselves. It stands beside truth as a picture like any other, in no ranking; the missing shadow is its own map."],
   ["Files", "images/SCENE/VARIANT.exr holds the layers diffuse and specular as half floats (one Y channel where a layer is grey), the values that this page shows; .png is a small picture at the scene's exposure. To keep the folder small, values below a quarter of the truth's mean luminance (more in finely textured scenes) are kept to the step that halves have there; a variant's values are kept to an eighth of its own relative RMSE, in steps of at most 0.8 % (1.6 or 3 % where the folder would else pass 58 MB); where the folder would pass 57 MB, one or two powers of two coarser); every metric was computed from the full floats. Shadowed truth is kept to 0.8 %, less than its own error."],
 ];

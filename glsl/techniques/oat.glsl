@@ -5,7 +5,7 @@ author_note = "overlap=smoothstep, centroid=average are Oat's, for diffuse light
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
-effects = ["two_sided", "fresnel", "many_lights"]
+effects = ["two_sided", "fresnel", "many_lights", "aperture"]
 exact = ["lambert_sphere"]
 
 [[option]]
@@ -30,54 +30,27 @@ centroid = "average"
 ---*/
 #include "brdf.glsl"
 #include "importance_cone.glsl"
-#include "solid_angle.glsl"
+#include "light_cap.glsl"
 #include "specular_albedo.glsl"
 #include "spherical_cap.glsl"
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
-  vec3 to_center = light.center - surface.position;
-  Cap source;
-#if EFFECT_SPHERE
-#if EFFECT_RECTANGLE || EFFECT_DISK
-  if (light.shape == SHAPE_SPHERE)
-#endif
-  {
-    source = SphereCap(to_center, light.half_size.x, surface.normal);
-  }
-#if EFFECT_RECTANGLE || EFFECT_DISK
-  else
-#endif
-#endif
-#if EFFECT_RECTANGLE || EFFECT_DISK
-  {
-    vec3 point = -vec3(dot(to_center, light.axis_x), dot(to_center, light.axis_y), dot(to_center, light.normal));
-    float solid_angle = 0.0;
-#if EFFECT_RECTANGLE && EFFECT_DISK
-    if (light.shape == SHAPE_DISK) {
-      solid_angle = DiskSolidAngle(point, light.half_size.x);
-    } else {
-      solid_angle = RectangleSolidAngle(point, light.half_size);
-    }
-#elif EFFECT_DISK
-    solid_angle = DiskSolidAngle(point, light.half_size.x);
-#else
-    solid_angle = RectangleSolidAngle(point, light.half_size);
-#endif
-    source = SphereCap(to_center, 0.0, surface.normal);
-    source.versine = solid_angle / (2.0 * kPi);
-  }
-#endif
-
+  Cap source = LightCap(light, surface.position, surface.normal);
   Cap aperture;
+#if EFFECT_APERTURE
+  aperture.axis = surface.aperture.xyz;
+  aperture.versine = surface.aperture.w;
+#else
   aperture.axis = surface.normal;
   aperture.versine = 1.0;
+#endif
   Cap lobe;
   float n_dot_v = clamp(dot(surface.normal, to_view), 0.0, 1.0);
   lobe.axis = surface.normal * (2.0 * dot(surface.normal, to_view)) - to_view;
   lobe.versine = max(EnergyConeVersine(surface.alpha, n_dot_v), 1e-12);  // below it float's directions are all alike
 
   // Areas over 2π: of the light's part in the aperture, of the aperture's part in the light's, of its part in the lobe.
-#if !EFFECT_PROXY_HORIZON
+#if !EFFECT_PROXY_HORIZON && !EFFECT_APERTURE
   CapOverlap open = WholeCap(source, aperture.axis);
   float open_area = open.area / (2.0 * kPi);
 #elif OVERLAP_EXACT
@@ -99,7 +72,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if CENTROID_AVERAGE
   vec3 sum = aperture.axis + source.axis;
   float cos_centroid = max(dot(surface.normal, sum) * inversesqrt(max(dot(sum, sum), 1e-20)), 0.0);
-#elif OVERLAP_EXACT || !EFFECT_PROXY_HORIZON
+#elif OVERLAP_EXACT || (!EFFECT_PROXY_HORIZON && !EFFECT_APERTURE)
   float cos_centroid = max(dot(surface.normal, open.moment), 0.0) / max(open.area, 1e-30);
 #else
   CapOverlap open = IntersectCaps(aperture, source);

@@ -333,7 +333,7 @@ std::vector<BadScene> BadScenes() {
        "'flux' is a radiometric quantity and this scene's units are photometric; expected 'luminance' or "
        "'luminous_flux'"},
       {"NewlineInKey", "\"a\\nb\" = 1 #HERE\n" + kCamera,
-       "unknown key 'a b' in the scene; expected one of: units, exposure, brdf, camera, material, surface, light"},
+       "unknown key 'a b' in the scene; expected one of: units, exposure, brdf, aperture, camera, material, surface, light"},
       {"PackageFileMissing",
        Surface("type = \"mesh\"\nfile = \"glmark2-data:models/teapot.obj\" #HERE\nmaterial = \"grey\"\n"),
        "no file 'models/teapot.obj'; expected a file in the Debian package glmark2-data"},
