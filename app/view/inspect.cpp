@@ -48,7 +48,7 @@ Inspection InspectPixel(const Scene& scene, const SurfacePixels& pixels, std::si
                           : fmt::format("The light '{}', its {} side.", scene.lights[light].name, kind > 0 ? "lit" : "dark");
     return inspection;
   }
-  SurfacePixels one{1, 1, pixels.view_position, {pixels.position[i]}, {pixels.normal[i]}, {pixels.base_color[i]}};
+  SurfacePixels one{1, 1, pixels.view_position, {pixels.position[i]}, {pixels.normal[i]}, {pixels.base_color[i]}, {}};
   const Truth truth = ComputeTruth(scene, one);
   inspection.surface = true;
   inspection.position = glm::dvec3(pixels.position[i]);
