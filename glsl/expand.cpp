@@ -107,8 +107,6 @@ class Expander {
       if (std::none_of(effects.begin(), effects.end(), named)) EmitHost(fmt::format("#define {} 0", path));
     }
     if (!variant_.technique) return;
-    const std::vector<std::string>& taken = variant_.technique->effects;
-    EmitHost(fmt::format("#define TECHNIQUE_TAKES_APERTURE {}", std::ranges::count(taken, "aperture")));
     for (const Option& option : variant_.technique->options) {
       for (const Choice& choice : option.choices) {
         const int chosen = variant_.options.at(option.name) == choice.name ? 1 : 0;
@@ -129,6 +127,10 @@ class Expander {
     }
     if (name == "brdf") return fmt::format("brdf/{}.glsl", Name(brdf_));
     if (!variant_.technique) return name;
+    if (name == "visibility") {
+      const std::vector<std::string>& taken = variant_.technique->effects;
+      return std::ranges::find(taken, "aperture") != taken.end() ? "visibility/own.glsl" : "visibility/aperture.glsl";
+    }
     if (name == "technique") return fmt::format("techniques/{}.glsl", variant_.technique->name);
     const auto option = variant_.options.find(name);
     return option == variant_.options.end() ? name : fmt::format("{}/{}.glsl", name, option->second);

@@ -4,16 +4,16 @@
 #include "lights.glsl"
 #include "lit.glsl"
 #include "technique"
-#if EFFECT_APERTURE && !TECHNIQUE_TAKES_APERTURE
-#include "aperture.glsl"
+#if EFFECT_APERTURE
+#include "visibility"
 #endif
 
 void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
   Light light = LoadLight(i);
   if (!Lit(FaceLight(light, surface.position))) return;
   Radiance radiance = ShadeLight(surface, light, to_view);
-#if EFFECT_APERTURE && !TECHNIQUE_TAKES_APERTURE
-  float visible = ApertureShare(surface, light);
+#if EFFECT_APERTURE
+  float visible = Visibility(surface, light);
   radiance.diffuse *= visible;
   radiance.specular *= visible;
 #endif

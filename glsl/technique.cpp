@@ -37,7 +37,7 @@ const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lam
                                        "ggx_disk",          "ggx_sphere",   "point_limit"};
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
-                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf"};
+                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "visibility"};
 
 std::string Upper(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));

@@ -1,9 +1,8 @@
-#pragma once
-// Visibility out of the ambient aperture [Oat 2006], for techniques that know of none.
+// Out of the ambient aperture [Oat 2006], for techniques that know of none.
 #include "light_cap.glsl"
 
 // Of what the light's cap shows above the horizon, the share that lies in the aperture, [0, 1].
-float ApertureShare(Surface surface, Light light) {
+float Visibility(Surface surface, Light light) {
   if (surface.aperture.w >= 1.0) return 1.0;  // all of the hemisphere
   Cap source = LightCap(light, surface.position, surface.normal);
   Cap aperture;
