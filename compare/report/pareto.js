@@ -55,7 +55,7 @@ function placeNames(marks, X, Y, box, lines) {
 function draw(host, plot) {
   host.replaceChildren();
   const width = Math.max(280, host.clientWidth), height = Math.round(Math.min(470, Math.max(330, width * 0.55)));
-  const box = { left: 58, right: width - 12, top: 26, bottom: height - 46 };
+  const box = { left: 66, right: width - 12, top: 26, bottom: height - 46 };
   const svg = d3.select(host).append("svg").attr("viewBox", `0 0 ${width} ${height}`).attr("width", width).attr("height", height)
     .attr("role", "group").attr("aria-label", plot.name);
   const axis = (key, range) => {
