@@ -103,7 +103,9 @@ void Session::Save() {
   text_.clear();
   SaveScene(on_disk_, saved);
   on_disk_ = std::move(saved);
-  Autosave();
+  std::error_code error;
+  std::filesystem::remove(AutosaveFile(), error);
+  autosaved_ = Current();
 }
 
 // Named by the scene file's whole path, of which any character may be in a file name but the separator.
@@ -207,7 +209,7 @@ Opened MeshScene(const fs::path& mesh) {
         "name = \"floor\"\nbase_color = 0.25\nroughness = 0.35\n\n[[surface]]\ntype = \"mesh\"\nfile = \"{0}\"\nheight = 1.0\n{5}"
         "\n[[surface]]\ntype = \"plane\"\nsize = [{4:.3f}, {4:.3f}]\nmaterial = \"floor\"\n\n[[light]]\nname = \"softbox\"\n"
         "shape = \"rectangle\"\nposition = [-1.6, -0.9, 1.9]\ntarget = [0.0, 0.0, 0.45]\nsize = [1.4, 1.4]\nradiance = 6.0\n",
-        mesh.filename().string(), eye.x, eye.y, eye.z, floor, gltf ? "" : "material = \"clay\"\n");
+        mesh.filename().string(), eye.x, eye.y, eye.z, floor, gltf ? "" : mesh.extension() == ".obj" ? "up = \"y\"\nmaterial = \"clay\"\n" : "material = \"clay\"\n");
   };
   fs::path file = mesh;
   file.replace_extension(".toml");

@@ -817,7 +817,7 @@ void RunView(const ViewOptions& options) {
   session.light = 0;  // its handles say what can be done; Escape puts them away
   session.navigation = static_cast<Navigation>(remembered.navigation);
   ChoosePanes(options, session);
-  GlfwWindow window(options.size.value_or(remembered.size), session.scene.name + " – AreaLab");
+  GlfwWindow window(options.size.value_or(remembered.size), session.scene.name + " … – AreaLab");
   WatchInputs(window.window);
   const ImGuiLibrary imgui(window.window);
   View(options, window, worker, session).Run();

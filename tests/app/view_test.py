@@ -184,6 +184,9 @@ class Window:
             self.process.kill()
         self.process.wait()
         self.process.stdout.close()
+        # The server takes the window down after the process: the next one must not be mistaken for it.
+        until(lambda: subprocess.run(["xdotool", "search", "--name", "AreaLab"], env=environment(), capture_output=True).stdout == b"",
+              "window gone")
 
 
 class ViewTest(unittest.TestCase):
@@ -221,6 +224,17 @@ class ViewTest(unittest.TestCase):
             worst = max(max(abs(a - b) for a, b in zip(x, y)) for x, y in zip(seen[2], rendered[2]))
             self.assertLessEqual(worst, 1)
             self.assertGreater(max(map(max, rendered[2])), 200)
+
+    def test_a_mesh_alone_and_a_turntable(self):
+        mesh = FOLDER / "pyramid.obj"
+        mesh.write_text("v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 2 0\nf 1 5 2\nf 2 5 3\nf 3 5 4\nf 4 5 1\n")
+        result = arealab("view", mesh, "--bare", "--technique", "point", "--size", "160x120", "--turntable", "round", "--frames", 3)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        frames = sorted((FOLDER / "round").iterdir())
+        self.assertEqual([frame.name for frame in frames], ["0001.png", "0002.png", "0003.png"])
+        pictures = [read_png(frame.read_bytes())[2] for frame in frames]
+        self.assertEqual(len({b"".join(rows) for rows in pictures}), 3)
+        self.assertGreater(max(map(max, pictures[0])), 60)  # lit
 
     def test_orbit_and_wipe(self):
         window = self.window(self.scene(), "--technique", "ltc", "--technique", "point")
@@ -270,6 +284,20 @@ class ViewTest(unittest.TestCase):
         window.settled()
         window.do("key", "ctrl+s")
         until(lambda: file.read_text() == SCENE, "file as it was before the edits")
+
+        # A crash loses a few seconds of work at most, and the next start offers the rest.
+        window.drag((LIGHT[0] + 70, LIGHT[1]), (LIGHT[0] + 130, LIGHT[1]))
+        left = FOLDER / "state" / "arealab"
+        until(lambda: left.is_dir() and any(left.iterdir()), "autosave")
+        window.end()
+        self.assertEqual(file.read_text(), SCENE)
+        window = self.window(file, "--technique", "ltc")
+        window.settled()
+        window.do("key", "ctrl+r")
+        until(lambda: "brought back" in window.log(), "offer taken")
+        window.do("key", "ctrl+s")
+        until(lambda: file.read_text() != SCENE, "saved again")
+        self.assertGreater(tomllib.loads(file.read_text())["light"][0]["position"][0], 0.2)
         window.leave()
         self.assertEqual(arealab("render", file, "--technique", "ltc", "--size", "16x16", "-o", "again.png").returncode, 0)
 
