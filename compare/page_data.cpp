@@ -66,9 +66,9 @@ Plane Shifted(const Plane& plane, int shift) {
 }
 
 std::vector<std::uint8_t> Deflate(const std::vector<std::uint8_t>& bytes) {
-  // Level 5: the report's pictures in the time of zlib's 4 and 9 % smaller; 7 takes 1.8 times as long for 4 % more.
+  // Level 7: 13 % smaller than zlib at 4 in 1.6 times its time; 5 is 9 % smaller in the same time.
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(5), &libdeflate_free_compressor);
+      libdeflate_alloc_compressor(7), &libdeflate_free_compressor);
   if (compressor == nullptr) throw std::bad_alloc();
   std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
   packed.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), packed.data(), packed.size()));

@@ -145,7 +145,7 @@ struct Rounding {
 // Half floats are finer in the dark than any map shows: below a quarter of the truth's mean luminance m their
 // step at m/4 is kept, an error of at most 2⁻¹³ m. Where the truth alone would still take more than 0.9 bytes
 // a pixel on the page (fine texture all over) the step is doubled until it does not, at most to 2⁻⁸ m.
-constexpr double kCoarseBelow = 1.0 / 4.0, kCoarsest = 4.0, kBytesPerPixel = 0.6;
+constexpr double kCoarseBelow = 1.0 / 4.0, kCoarsest = 4.0, kBytesPerPixel = 0.5;
 constexpr double kSmallFile = 65536.0;  // bytes; never worth it
 
 Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
