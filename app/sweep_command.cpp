@@ -57,7 +57,7 @@ void RunSweep(const SweepArguments& arguments, const std::string& command_line) 
   const std::unique_ptr<Context> context = arguments.common.MakeContext();
   CompareOptions options;
   options.cache = arguments.common.CacheFolder();
-  options.timed_against = ParseVariant(techniques, "point");
+  if (arguments.seconds > 0.0) options.timed_against = ParseVariant(techniques, "point");
   options.timing.seconds = arguments.seconds;
   std::string no_isa;
   try {
@@ -113,7 +113,7 @@ void AddSweep(CLI::App& app, int& /*status*/, const std::string& command_line) {
   command->add_option("--shard", arguments->shard, "i/n: every n-th value from the i-th on; `compare --merge` joins the parts")
       ->capture_default_str();
   command->add_option("--out", arguments->out, "folder of the curves")->capture_default_str();
-  command->add_option("--seconds", arguments->seconds, "of clock for the times at each value")->capture_default_str()->check(CLI::Range(0.1, 600.0));
+  command->add_option("--seconds", arguments->seconds, "of clock for the times at each value; 0: no times")->capture_default_str()->check(CLI::Range(0.0, 600.0));
   command->add_option("--cache", arguments->common.cache, "folder of truths already computed (default: the user's cache)");
   arguments->common.AddContext(*command);
   arguments->common.AddSize(*command);

@@ -191,7 +191,7 @@ TEST_F(Cli, KilledAtAnyMomentNothingIsHalfWritten) {
 }
 
 TEST_F(Cli, ASweepInPartsIsTheWholeSweep) {
-  const std::string rest = " --values 0.3,0.6,0.9 --technique point --technique ltc --size 32x32 --seconds 0.1 --context osmesa" + Cache();
+  const std::string rest = " --values 0.3,0.6,0.9 --technique point --technique ltc --size 32x32 --seconds 0 --context osmesa" + Cache();
   for (const std::string part : {"1/2", "2/2"}) {
     const Outcome outcome = Arealab("sweep roughness --shard " + part + " --out " + Path("part" + part.substr(0, 1)) + rest);
     ASSERT_EQ(outcome.status, 0) << outcome.out;
