@@ -6,11 +6,11 @@ cd "$(dirname "$0")/.."
 
 packages="g++ cmake ninja-build pkg-config python3-glad libglm-dev libopenimageio-dev libassimp-dev
   libtomlplusplus-dev libtbb-dev libcli11-dev libfmt-dev libeigen3-dev nlohmann-json3-dev
-  libembree-dev libdeflate-dev libegl-dev libosmesa6-dev libosmesa6 libegl1 libegl-mesa0 libgl1-mesa-dri libgtest-dev libgmock-dev
+  libembree-dev libdeflate-dev zlib1g-dev libegl-dev libosmesa6-dev libosmesa6 libegl1 libegl-mesa0 libgl1-mesa-dri libgtest-dev libgmock-dev
   libglfw3-dev libimgui-dev libstb-dev libgl1 libglx-mesa0 fonts-dejavu-core
   glmark2-data ca-certificates libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-cross node-d3"
 if [ "${1:-}" = test ]; then
-  packages="$packages git zlib1g-dev chromium chromium-driver python3-selenium xvfb xdotool"
+  packages="$packages git chromium chromium-driver python3-selenium xvfb xdotool"
 fi
 
 missing=""
