@@ -13,7 +13,7 @@
 namespace arealab {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;  // changes whenever the bake's results or the file's layout change
+constexpr std::uint64_t kApertureVersion = 1;  // changes whenever the bake's results or the file's layout change
 
 std::uint64_t Checksum(const Scene& scene) {
   ContentHash hash;
@@ -57,7 +57,7 @@ bool CachedApertures(Scene& scene, const std::filesystem::path& cache_folder,
                      const std::function<void(double)>& progress) {
   if (!scene.aperture) return false;
   ContentHash hash;
-  hash.Value(kVersion);
+  hash.Value(kApertureVersion);
   hash.Value(scene.aperture->rays);
   AddTriangles(hash, scene);
   const std::filesystem::path file = cache_folder / (hash.Name() + ".apertures");

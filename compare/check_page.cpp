@@ -124,7 +124,7 @@ std::string Ramp(bool is_signed) {
   return fmt::format("<span class=\"ramp\" style=\"background: linear-gradient(90deg, {})\"></span>", stops);
 }
 
-constexpr const char* kStyle = R"(
+constexpr const char* kCheckStyle = R"(
 :root { color-scheme: light dark; }
 body { margin: 2rem auto; width: min(100% - 2rem, 72rem); font: 15px/1.5 system-ui, "Segoe UI", Roboto, Arial, sans-serif; overflow-wrap: anywhere; }
 h1 { font-size: 1.6rem; } h2 { margin: 2.4rem 0 .4rem; font-size: 1.2rem; } h3 { margin: 1rem 0 .3rem; font-size: 1rem; }
@@ -145,7 +145,7 @@ void WriteCheckPage(const CheckResult& result, const std::string& command, const
       "content=\"width=device-width\"><title>AreaLab: image tests that "
       "failed</title>\n<style>{}</style></head>\n<body>\n"
       "<h1>{} failed</h1>\n<p>Drawn by {}; the goldens by {}.</p>\n",
-      kStyle, result.failures() == 1 ? "One image test" : fmt::format("{} image tests", result.failures()),
+      kCheckStyle, result.failures() == 1 ? "One image test" : fmt::format("{} image tests", result.failures()),
       Escaped(result.renderer),
       Escaped(result.golden_renderer.empty() ? "nobody yet" : result.golden_renderer));
   html += fmt::format(

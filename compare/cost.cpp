@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes whenever the harness, the compilers' options or the cache's layout change.
-constexpr int kVersion = 1;
+constexpr int kCostVersion = 1;
 
 constexpr std::array kGpus = {"tahiti",   "pitcairn", "verde",  "bonaire", "hawaii", "tonga",  "fiji",    "polaris10",
                               "polaris11", "polaris12", "vega10", "vega12",  "vega20", "raven",  "renoir",  "navi10",
@@ -174,7 +174,7 @@ std::vector<char> CostMeter::Translate(const Text& text) const {
 
 fs::path CostMeter::CacheFile(const Text& text, const Text& vertex, const std::string& gpu) const {
   ContentHash hash;
-  hash.Value(kVersion);
+  hash.Value(kCostVersion);
   hash.Text(compilers_);
   hash.Text(gpu);
   hash.Value(text.targets);

@@ -18,7 +18,7 @@ namespace {
 constexpr float kLargestHalf = 65504.0f;  // (2 − 2⁻¹⁰) · 2¹⁵
 constexpr float kSmallestPeak =
     0.0625f;  // 10 stops above the smallest normal half, 2⁻¹⁴: full precision down to 1/1024 of it
-const char* const kLobes[2] = {"diffuse", "specular"};
+const char* const kLayers[2] = {"diffuse", "specular"};
 
 // IEEE 754 binary16: sign, 5 bits of exponent biased by 15, 10 of fraction.
 float DecodeHalf(std::uint16_t bits) {
@@ -215,7 +215,7 @@ void WriteExr(const std::filesystem::path& file, const HalfImage& image) {
     const bool gray = image.IsGray(lobe);
     for (int channel = 0; channel < (gray ? 1 : 3); ++channel) {
       planes.push_back(3 * lobe + channel);
-      names.push_back(fmt::format("{}.{}", kLobes[lobe], gray ? 'Y' : "RGB"[channel]));
+      names.push_back(fmt::format("{}.{}", kLayers[lobe], gray ? 'Y' : "RGB"[channel]));
     }
   }
   const bool as_half = image.exponent == 0;
@@ -246,7 +246,7 @@ void WriteExr(const std::filesystem::path& file, const HalfImage& image) {
 void WriteExr(const std::filesystem::path& file, const RadianceImage& image) {
   OIIO::ImageSpec spec(image.width, image.height, 6, OIIO::TypeDesc::FLOAT);
   spec.channelnames.clear();
-  for (const char* lobe : kLobes) {
+  for (const char* lobe : kLayers) {
     for (char channel : {'R', 'G', 'B'}) spec.channelnames.push_back(fmt::format("{}.{}", lobe, channel));
   }
   spec.attribute("compression", "zip");
@@ -276,14 +276,14 @@ RadianceImage ReadExr(const std::filesystem::path& file) {
   image.width = spec.width;
   image.height = spec.height;
   for (int lobe = 0; lobe < 2; ++lobe) {
-    const int gray = spec.channelindex(fmt::format("{}.Y", kLobes[lobe]));
+    const int gray = spec.channelindex(fmt::format("{}.Y", kLayers[lobe]));
     auto& target = lobe == 0 ? image.diffuse : image.specular;
     target.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
     for (int c = 0; c < 3; ++c) {
-      const int index = gray >= 0 ? gray : spec.channelindex(fmt::format("{}.{}", kLobes[lobe], "RGB"[c]));
+      const int index = gray >= 0 ? gray : spec.channelindex(fmt::format("{}.{}", kLayers[lobe], "RGB"[c]));
       if (index < 0) {
         throw InputError(
-            fmt::format("{}: no layer {}; expected diffuse and specular", file.string(), kLobes[lobe]));
+            fmt::format("{}: no layer {}; expected diffuse and specular", file.string(), kLayers[lobe]));
       }
       for (std::size_t i = 0; i < target.size(); ++i) {
         target[i][c] = pixels[i * static_cast<std::size_t>(spec.nchannels) + static_cast<std::size_t>(index)];

@@ -112,8 +112,6 @@ const std::array kAllowances{
     StressAllowance{"reference", "thin", {0.2, 0.1, 8.0}, kPolar},
 };
 
-const std::array<double Shaded::*, 2> kLobes{&Shaded::diffuse, &Shaded::specular};
-
 double FormFactorFaced(const PointCase& c) {
   const dvec3 from_center = c.position - c.center;
   const glm::dvec2 half = c.half_size;

@@ -164,7 +164,7 @@ std::string Paths(const VariantStress& variant) {
   return html + "</div></details>\n";
 }
 
-constexpr const char* kStyle = R"(
+constexpr const char* kStressStyle = R"(
 :root { color-scheme: light dark; --line: #8885; --accent: light-dark(#9a4a00, #ffb866); --warn: light-dark(#b3261e, #ff8a80); }
 body { margin: 2rem auto; width: min(100% - 2rem, 92rem); font: 15px/1.55 system-ui, "Segoe UI", Roboto, "Noto Sans", Arial, sans-serif; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 h1 { font-size: 1.9rem; letter-spacing: -.02em; margin: 0 0 .5rem; } h2 { margin: 2.2rem 0 .6rem; font-size: 1.25rem; }
@@ -206,7 +206,7 @@ void WriteStressPage(const StressResult& result, const fs::path& folder) {
       "are only shown are their "
       "authors', and may. *: an input's last bit moves the answer, and "
       "what is judged is how many of the inputs' ulps explain the error. A cell opens its worst case.</p>\n",
-      kStyle, result.cases, result.seed, Escaped(result.renderer),
+      kStressStyle, result.cases, result.seed, Escaped(result.renderer),
       failures == 0 ? "Every form that is judged keeps its bounds."
                     : fmt::format("{} bounds exceeded.", failures),
       Ramp());

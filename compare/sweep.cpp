@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kCamera = "[camera]\nposition = [0.0, -3.6, 2.2]\ntarget = [0.0, 0.4, 0.0]\nvertical_fov = 40.0\n";
 constexpr const char* kFloor = "[[surface]]\ntype = \"plane\"\nsize = [5.0, 5.0]\nmaterial = \"floor\"\n";
 
-std::string Material(double roughness) {
+std::string MaterialText(double roughness) {
   return fmt::format("[[material]]\nname = \"floor\"\nbase_color = 0.4\nroughness = {}\n", roughness);
 }
 
@@ -49,20 +49,20 @@ const std::string kUsualPanel = Panel({0.0, 1.6, 0.8}, {0.0, -1.0, -0.3}, {1.8, 
 
 std::string SceneText(const std::string& axis, double value) {
   const double degree = std::numbers::pi / 180.0;
-  if (axis == "lights") return kCamera + Material(0.3) + kFloor + Lights(static_cast<int>(value));
-  if (axis == "roughness") return kCamera + Material(value) + kFloor + kUsualPanel;
+  if (axis == "lights") return kCamera + MaterialText(0.3) + kFloor + Lights(static_cast<int>(value));
+  if (axis == "roughness") return kCamera + MaterialText(value) + kFloor + kUsualPanel;
   if (axis == "angle") {
     return fmt::format("[camera]\nposition = [0.0, {}, {}]\ntarget = [0.0, 0.0, 0.0]\nup = [0.0, 1.0, 1.0]\nvertical_fov = 16.0\n",
                        -4.0 * std::sin(value * degree), 4.0 * std::cos(value * degree)) +
-           Material(0.3) + kFloor + kUsualPanel;
+           MaterialText(0.3) + kFloor + kUsualPanel;
   }
-  if (axis == "light_size") return kCamera + Material(0.3) + kFloor + Panel({0.0, 1.6, 1.2}, {0.0, -1.0, -0.6}, glm::dvec2(value));
+  if (axis == "light_size") return kCamera + MaterialText(0.3) + kFloor + Panel({0.0, 1.6, 1.2}, {0.0, -1.0, -0.6}, glm::dvec2(value));
   if (axis == "distance") {
-    return kCamera + Material(0.3) + kFloor + Panel({0.0, 0.8 * value, 0.6 * value}, {0.0, -0.8, -0.6}, {0.8, 0.8});
+    return kCamera + MaterialText(0.3) + kFloor + Panel({0.0, 0.8 * value, 0.6 * value}, {0.0, -0.8, -0.6}, {0.8, 0.8});
   }
   if (axis == "crossing") {
     // The light reaches below the level strip's horizon, and stands wholly above that of the tilted one.
-    std::string text = fmt::format("[camera]\nposition = [0.0, -1.2, 4.0]\ntarget = [0.0, 0.0, 0.0]\nvertical_fov = 24.0\n") + Material(0.3);
+    std::string text = fmt::format("[camera]\nposition = [0.0, -1.2, 4.0]\ntarget = [0.0, 0.0, 0.0]\nvertical_fov = 24.0\n") + MaterialText(0.3);
     const double left = 4.0 * value, right = 4.0 - left;
     const auto strip = [&](double width, double middle, double tilt) {
       return fmt::format("[[surface]]\ntype = \"plane\"\nsize = [{}, 1.8]\nposition = [{}, 0.0, 0.0]\nrotation = [{}, 0.0, 0.0]\nmaterial = \"floor\"\n",
@@ -72,7 +72,7 @@ std::string SceneText(const std::string& axis, double value) {
     if (right > 0.0) text += strip(right, 2.0 - 0.5 * right, -30.0);
     return text + Panel({0.0, 1.6, 0.3}, {0.0, -1.0, 0.0}, {3.0, 1.0});
   }
-  return kCamera + Material(0.3) + kFloor + kUsualPanel;  // pixels, samples
+  return kCamera + MaterialText(0.3) + kFloor + kUsualPanel;  // pixels, samples
 }
 
 double NumberOf(const Json& value) {

@@ -24,7 +24,7 @@ namespace arealab {
 namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
-constexpr std::uint64_t kVersion = 4;
+constexpr std::uint64_t kTruthVersion = 4;
 constexpr std::uint64_t kShadowVersion = 2;  // of the visibility on top of it
 constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
 
@@ -53,7 +53,7 @@ std::optional<TruthBand> Read(const std::filesystem::path& file, const std::stri
   std::ifstream in(file, std::ios::binary);
   Header header{};
   if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic ||
-      header.version != kVersion || std::string_view(header.key.data(), header.key.size()) != key ||
+      header.version != kTruthVersion || std::string_view(header.key.data(), header.key.size()) != key ||
       header.width != static_cast<std::uint64_t>(width) || header.rows != static_cast<std::uint64_t>(rows)) {
     return std::nullopt;
   }
@@ -87,7 +87,7 @@ void Write(const std::filesystem::path& file, const std::string& key, int width,
     std::ofstream out(part, std::ios::binary | std::ios::trunc);
     Header header{kMagic,
                   {},
-                  kVersion,
+                  kTruthVersion,
                   static_cast<std::uint64_t>(width),
                   static_cast<std::uint64_t>(rows),
                   Checksum(band),
@@ -119,7 +119,7 @@ void AddVector(ContentHash& hash, const glm::dvec3& v) {
 }
 
 void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
-  hash.Value(kVersion);
+  hash.Value(kTruthVersion);
   hash.Value(options.tolerance);
   hash.Value(pixels.width);
   hash.Value(pixels.height);

@@ -11,16 +11,12 @@
 
 #include "glsl/fp64_rewrite.h"
 #include "glsl/nearest.h"
+#include "glsl/words.h"
 #include "scenes/error.h"
 
 namespace arealab {
 
 namespace {
-
-std::string Upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return text;
-}
 
 std::vector<std::string_view> SplitLines(std::string_view text) {
   std::vector<std::string_view> lines;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <optional>
 #include <regex>
@@ -11,13 +10,11 @@
 #include <string_view>
 
 #include "glsl/expand.h"
+#include "glsl/words.h"
 #include "scenes/error.h"
 
 namespace arealab {
 namespace {
-
-bool IsWordStart(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
-bool IsWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 std::string_view Trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\n");

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "glsl/words.h"
+
 namespace arealab {
 
 namespace {
@@ -12,16 +14,6 @@ namespace {
 constexpr std::array<std::string_view, 16> kFloatOnly{"acos", "asin", "atan", "cos",  "cosh", "degrees",
                                                       "exp",  "exp2", "log",  "log2", "pow",  "radians",
                                                       "sin",  "sinh", "tan",  "tanh"};
-
-bool IsWordStart(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
-}
-bool IsDigit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c));
-}
-bool IsWord(char c) {
-  return IsWordStart(c) || IsDigit(c);
-}
 
 bool IsOneOf(std::string_view word, const auto& list) {
   return std::find(list.begin(), list.end(), word) != list.end();

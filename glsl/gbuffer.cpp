@@ -30,14 +30,14 @@ constexpr int kSphereSegments = 128;
 // gbuffer.frag reads vertices as 12 floats in this order.
 static_assert(sizeof(Vertex) == 12 * sizeof(float));
 
-struct View {
+struct CameraView {
   glm::dvec3 position;  // m, world: what float holds of the camera's, so that everyone means the same point
   glm::dvec3 right, up, forward;
   glm::dvec2 half_extent;  // of the picture at distance 1
 };
 
-View MakeView(const Camera& camera, glm::ivec2 size) {
-  View view;
+CameraView ViewOf(const Camera& camera, glm::ivec2 size) {
+  CameraView view;
   view.position = glm::dvec3(glm::vec3(camera.position));
   view.forward = glm::normalize(camera.target - camera.position);
   view.right = glm::cross(view.forward, camera.up);
@@ -157,7 +157,7 @@ struct GBuffer::Geometry {
   std::vector<Range> ranges;           // one per draw
   std::vector<DrawEntry> draws;
   std::vector<TextureSet> texture_sets{TextureSet{}};  // the first: none
-  View view;
+  CameraView view;
   double near = 0.0;  // m
 
   void Add(const Mesh& mesh, const Material& material, float kind) {
@@ -292,7 +292,7 @@ GBuffer::Geometry GBuffer::Gather(const Scene& scene, const glm::dvec3& camera) 
 
 const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
   Allocate(size);
-  const View view = MakeView(scene.camera, size);
+  const CameraView view = ViewOf(scene.camera, size);
   Geometry geometry = Gather(scene, view.position);
   const glm::dvec2 distances = geometry.Distances(view.position);
   // The nearest point may be seen in the picture's corner, at a depth of its distance × the cosine of that
@@ -343,7 +343,7 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
 }
 
 void GBuffer::DrawCoverage(const Geometry& geometry) {
-  const View& view = geometry.view;
+  const CameraView& view = geometry.view;
   const Program& program = coverage_program_;
   program.Set("view_position", glm::vec3(view.position));
   program.Set("view_from_world", glm::mat3(glm::transpose(glm::dmat3(view.right, view.up, view.forward))));
@@ -394,7 +394,7 @@ void GBuffer::Resolve(const Geometry& geometry) {
   gl_.NamedFramebufferTexture(framebuffer_.id(), GL_COLOR_ATTACHMENT3, apertures ? aperture_.id() : 0, 0);
   gl_.NamedFramebufferDrawBuffers(framebuffer_.id(), target_count, targets.data());
   const Program& program = ResolveProgram(apertures);
-  const View& view = geometry.view;
+  const CameraView& view = geometry.view;
   program.Set("view_position", view.position);
   program.Set("ray_forward", view.forward);
   program.Set("ray_right", view.right * view.half_extent.x);

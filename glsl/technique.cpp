@@ -4,7 +4,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "glsl/effects.h"
 #include "glsl/nearest.h"
+#include "glsl/words.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -38,11 +38,6 @@ const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lam
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
                                                 "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "visibility"};
-
-std::string Upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return text;
-}
 
 std::vector<std::string> ShapeNames(const std::vector<LightShape>& shapes) {
   std::vector<std::string> names;

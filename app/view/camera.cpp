@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace arealab {
-namespace {
-
-glm::dvec3 Rotated(const glm::dvec3& v, const glm::dvec3& axis, double angle) {  // [Rodrigues]
-  const double c = std::cos(angle), s = std::sin(angle);
-  return c * v + s * glm::cross(axis, v) + (1.0 - c) * glm::dot(axis, v) * axis;
-}
-
-}  // namespace
-
 Projection::Projection(const Camera& camera, glm::dvec2 picture) : position(camera.position), size(picture) {
   forward = glm::normalize(camera.target - camera.position);
   right = glm::cross(forward, camera.up);
@@ -42,11 +34,11 @@ double Projection::PixelSize(const glm::dvec3& world) const {
 void Orbit(Camera& camera, double azimuth, double elevation) {
   constexpr double kPole = 0.5 * glm::pi<double>() / 180.0;
   const glm::dvec3 up = glm::normalize(camera.up);
-  glm::dvec3 offset = Rotated(camera.position - camera.target, up, azimuth);
+  glm::dvec3 offset = glm::angleAxis(azimuth, up) * (camera.position - camera.target);
   const double polar = std::acos(std::clamp(glm::dot(glm::normalize(offset), up), -1.0, 1.0));
   const double turned = std::clamp(polar - elevation, kPole, glm::pi<double>() - kPole);
   const glm::dvec3 side = glm::cross(up, offset);
-  if (glm::length(side) > 0.0) offset = Rotated(offset, glm::normalize(side), turned - polar);
+  if (glm::length(side) > 0.0) offset = glm::angleAxis(turned - polar, glm::normalize(side)) * offset;
   camera.position = camera.target + offset;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -41,11 +42,6 @@ std::optional<double> AlongLine(const glm::dvec3& o, const glm::dvec3& d, const 
   const double ad = glm::dot(a, d), denominator = 1.0 - ad * ad;
   if (denominator < 1e-4) return std::nullopt;  // seen end on
   return (glm::dot(a, w) - ad * glm::dot(d, w)) / denominator;
-}
-
-glm::dvec3 Rotated(const glm::dvec3& v, const glm::dvec3& axis, double angle) {  // [Rodrigues]
-  const double c = std::cos(angle), s = std::sin(angle);
-  return c * v + s * glm::cross(axis, v) + (1.0 - c) * glm::dot(axis, v) * axis;
 }
 
 std::array<glm::dvec3, 3> Axes(const Light& light, GizmoMode mode) {
@@ -188,8 +184,8 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
       double angle = angle_at(mouse) - angle_at(grabbed_);
       if (glm::dot(from[held], before_.center - view.position) > 0.0) angle = -angle;  // the axis points away from us
       angle = snapped(std::remainder(angle, 2.0 * glm::pi<double>()), kSnapAngle);
-      light.axis_x = glm::normalize(Rotated(before_.axis_x, from[held], angle));
-      light.normal = glm::normalize(Rotated(before_.normal, from[held], angle));
+      light.axis_x = glm::normalize(glm::angleAxis(angle, from[held]) * before_.axis_x);
+      light.normal = glm::normalize(glm::angleAxis(angle, from[held]) * before_.normal);
       light.axis_y = glm::cross(light.normal, light.axis_x);
     } else if (before_center) {
       const double ratio = glm::distance(mouse, *before_center) / std::max(glm::distance(grabbed_, *before_center), 4.0 * line);
