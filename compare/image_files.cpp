@@ -88,6 +88,13 @@ bool HalfImage::IsGray(int lobe) const {
   return planes[first] == planes[first + 1] && planes[first] == planes[first + 2];
 }
 
+bool HalfImage::IsFinite() const {
+  constexpr unsigned kExponent = 0x7c00;  // all ones: infinite or no number
+  return std::all_of(planes.begin(), planes.end(), [](const std::vector<std::uint16_t>& plane) {
+    return std::all_of(plane.begin(), plane.end(), [](unsigned bits) { return (bits & kExponent) != kExponent; });
+  });
+}
+
 float HalfImage::Value(int plane, std::size_t i) const {
   return std::ldexp(HalfToFloat(planes[static_cast<std::size_t>(plane)][i]), exponent);
 }
@@ -128,10 +135,14 @@ std::uint16_t HalfBits(float v) {
 // `truth` and `stored` are both given or both null; all values are already divided by 2^exponent.
 std::uint16_t Round(float v, float coarsest, const float* truth, float stored) {
   if (!std::isfinite(v) || v == 0.0f) return HalfBits(v);
-  const float step = std::max(Step(v), coarsest);
-  float rounded = ToMultiple(v, step);
-  if (truth != nullptr && std::isfinite(*truth) && std::max(Step(*truth), coarsest) == step) {
-    rounded = stored + ToMultiple(v - *truth, step);
+  float step = std::max(Step(v), coarsest), rounded = ToMultiple(v, step);
+  if (truth != nullptr && std::isfinite(*truth)) {
+    // Where the two lie within two powers of two the difference is what is kept; farther off it is the value itself.
+    const float its_step = std::max(Step(*truth), coarsest);
+    if (its_step <= 4.0f * step && step <= 4.0f * its_step) {
+      step = std::max(step, its_step);
+      rounded = stored + ToMultiple(v - *truth, step);
+    }
   }
   return HalfBits(std::clamp(rounded, -kLargestHalf, kLargestHalf));
 }
@@ -223,9 +234,9 @@ void WriteExr(const std::filesystem::path& file, const HalfImage& image) {
   OIIO::ImageSpec spec(image.width, image.height, count,
                        as_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
   spec.channelnames = names;
-  // Measured on smooth shading, 512×512, 6 channels: PIZ 617 KB, ZIP 325, PXR24 268 (which is lossless for
-  // halves).
-  spec.attribute("compression", as_half ? "pxr24" : "zip");
+  // Measured on `gloss`, `relief` and `scan`: PXR24, lossless for halves, 13.6 MB; DWA 7.7 MB at its usual level, which
+  // moves values by 0.1 to 0.4 % in the mean and at edges by some percent. It smears what is not finite.
+  spec.attribute("compression", !as_half ? "zip" : image.IsFinite() ? "dwab:45" : "pxr24");
   const std::size_t size = image.planes[0].size();
   if (as_half) {
     std::vector<std::uint16_t> pixels(size * planes.size());

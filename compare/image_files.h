@@ -22,6 +22,7 @@ struct HalfImage {
       planes;  // half bits: diffuse R G B, specular R G B; row 0 is the top
 
   bool IsGray(int lobe) const;  // R = G = B, bit for bit; lobe 0 diffuse, 1 specular
+  bool IsFinite() const;
   float Value(int plane, std::size_t i) const;
 };
 
@@ -30,8 +31,8 @@ HalfImage ToHalf(const RadianceImage& image);
 // For files that are to stay small: values below `coarse_below` (in the images' unit) are kept to the step
 // that halves have there, not to a finer one; and each value is rounded by its difference from the truth, of
 // which `truth` is exact and `stored` as it was stored, so that a − b on a page is right to half a step and
-// an exact technique differs nowhere. Hence |stored − exact| is at most one step. Values of other magnitude
-// than the truth's are rounded by themselves.
+// an exact technique differs nowhere. Hence |stored − exact| is at most one step beyond the truth's own. Values
+// more than two powers of two away from the truth's are rounded by themselves.
 HalfImage ToHalf(const RadianceImage& image, float coarse_below);
 HalfImage ToHalf(const RadianceImage& image, float coarse_below, const RadianceImage& truth,
                  const HalfImage& stored);
@@ -41,8 +42,8 @@ RadianceImage FromHalf(const HalfImage& image);
 // step of at most 2^(bits − 10). NaN and infinity stay what they are.
 void DropBits(HalfImage& image, int bits);
 
-// Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray), half where the exponent is 0,
-// else float with exactly the same values; lossless. Throws InputError where the file cannot be written.
+// Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray). Half where the exponent is 0, for the eye:
+// compressed by DWA where all is finite, else without loss; float with exactly the same values at other exponents. Throws InputError where the file cannot be written.
 void WriteExr(const std::filesystem::path& file, const HalfImage& image);
 // As float, unrounded.
 void WriteExr(const std::filesystem::path& file, const RadianceImage& image);

@@ -146,6 +146,7 @@ struct Rounding {
 // step at m/4 is kept, an error of at most 2⁻¹³ m. Where the truth alone would still take more than 0.9 bytes
 // a pixel on the page (fine texture all over) the step is doubled until it does not, at most to 2⁻⁸ m.
 constexpr double kCoarseBelow = 1.0 / 4.0, kCoarsest = 4.0, kBytesPerPixel = 0.5;
+constexpr int kTruthBits = 3;           // steps of 0.8 %: below what a picture shows; differences to it are kept finer
 constexpr double kSmallFile = 65536.0;  // bytes; never worth it
 
 Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
@@ -154,6 +155,7 @@ Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
   for (double below = kCoarseBelow; below <= kCoarsest; below *= 2.0) {
     rounding.coarse_below = static_cast<float>(below * mean_luminance);
     rounding.truth = ToHalf(*scene.truth, rounding.coarse_below);
+    DropBits(rounding.truth, kTruthBits);
     const double bytes = static_cast<double>(EncodePageImage({}, rounding.truth).size());
     if (bytes <= std::max(kSmallFile, kBytesPerPixel * static_cast<double>(scene.truth->size()))) break;
   }

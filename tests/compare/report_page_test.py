@@ -141,7 +141,7 @@ class Page(unittest.TestCase):
         names = self.js("return performance.getEntriesByType('resource').map((e) => e.name)")
         self.assertEqual([n for n in names if not n.startswith(("file:", "data:"))], [])
 
-    def test_map_pixels_equal_the_exr_values(self):
+    def test_map_pixels_equal_the_stored_values(self):
         self.open()
         distinct = set()
         for e in self.expected:
