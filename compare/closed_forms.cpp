@@ -93,6 +93,43 @@ LightCone DiskCone(const glm::dvec3& center, const glm::dvec3& normal, double ra
   return cone;
 }
 
+LightCone EllipseCone(const glm::dvec3& center, const glm::dvec3& half_a, const glm::dvec3& half_b, const glm::dvec3& normal) {
+  // In the axes of the half axes and the normal, lengths over the longer half axis: the dual cone c cᵀ − diag(a², b², 0) has the
+  // eigenvalue μ > 0 with x²/(μ + a²) + y²/(μ + b²) + z²/μ = 1, the largest of c's confocal coordinates, whose eigenvector is the
+  // cone's axis. The other two have the product a² b² z²/μ, so that the lesser keeps its digits where the cone is thin.
+  const double length_a = glm::length(half_a), length_b = glm::length(half_b), unit = std::max(length_a, length_b);
+  const glm::dvec3 x_axis = half_a / length_a, y_axis = half_b / length_b;
+  const double a2 = length_a * length_a / (unit * unit), b2 = length_b * length_b / (unit * unit);
+  const glm::dvec3 c = glm::dvec3(glm::dot(center, x_axis), glm::dot(center, y_axis), glm::dot(center, normal)) / unit;
+  const glm::dvec3 square = c * c;
+  // Decreasing and convex in μ; Newton from below cannot overshoot. Below: what the greater bound on each share leaves.
+  double mu = std::max({square.z, square.x + square.y + square.z - 1.0, 1e-300});
+  for (int step = 0; step < 200; ++step) {
+    const double u = square.x / (mu + a2), v = square.y / (mu + b2), w = square.z / mu;
+    const double move = (u + v + w - 1.0) / (u / (mu + a2) + v / (mu + b2) + w / mu);
+    mu += move;
+    if (!(move > 1e-16 * mu)) break;
+  }
+  const glm::dvec3 e3 = glm::normalize(glm::dvec3(c.x / (mu + a2), c.y / (mu + b2), c.z / mu));
+  const glm::dvec3 u = AnyPerpendicular(e3), v = glm::cross(e3, u);
+  const auto spread = [&](const glm::dvec3& p, const glm::dvec3& q) {
+    return a2 * p.x * q.x + b2 * p.y * q.y - glm::dot(c, p) * glm::dot(c, q);
+  };
+  const double uu = spread(u, u), vv = spread(v, v), uv = spread(u, v);
+  const double root = std::hypot(0.5 * (uu - vv), uv), wide = 0.5 * (uu + vv) + root, narrow = a2 * b2 * square.z / (mu * wide);
+  const double turn = 0.5 * std::atan2(uv, 0.5 * (uu - vv));
+  const auto world = [&](const glm::dvec3& p) { return x_axis * p.x + y_axis * p.y + normal * p.z; };
+  LightCone cone;
+  cone.axis_3 = world(e3);
+  cone.axis_1 = world(u * std::cos(turn) + v * std::sin(turn));
+  cone.axis_2 = glm::cross(cone.axis_3, cone.axis_1);
+  cone.sin_1 = std::sqrt(wide / (wide + mu));
+  cone.cos_1 = std::sqrt(mu / (wide + mu));
+  cone.sin_2 = std::sqrt(narrow / (narrow + mu));
+  cone.cos_2 = std::sqrt(mu / (narrow + mu));
+  return cone;
+}
+
 LightCone SphereCone(const glm::dvec3& center, double radius) {
   LightCone cone;
   double distance = glm::length(center);

@@ -5,12 +5,14 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "scenes/scene.h"
+
 namespace arealab {
 
 // The part of a convex polygon above the horizon z = 0, in order; points on the horizon have z exactly 0.
 // Fewer than three corners where nothing is left.
 struct HorizonPolygon {
-  std::array<glm::dvec3, 8> corners;
+  std::array<glm::dvec3, kMostCorners + 1> corners;
   int count = 0;
 };
 HorizonPolygon ClipToHorizon(std::span<const glm::dvec3> corners);
@@ -31,6 +33,10 @@ struct LightCone {
 // needs no cubic: the tangent across the plane through centre and normal is one axis, a 2×2 problem gives the
 // others.
 LightCone DiskCone(const glm::dvec3& center, const glm::dvec3& normal, double radius);
+
+// The cone of an ellipse seen from the origin: centre c, half axes a and b, perpendicular to each other and to the unit normal,
+// c·normal < 0.
+LightCone EllipseCone(const glm::dvec3& center, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& normal);
 
 // The cone of a sphere whose centre is farther than its radius.
 LightCone SphereCone(const glm::dvec3& center, double radius);

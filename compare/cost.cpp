@@ -321,7 +321,7 @@ void CostMeter::Store(const fs::path& file, const ShaderCost& cost) {
 }
 
 Scene SceneOfEffects(const std::vector<std::string>& effects) {
-  constexpr std::array kNames = {"rectangle", "disk", "sphere", "two_sided", "diffuse", "specular", "fresnel", "many_lights"};
+  constexpr std::array kNames = {"rectangle", "disk", "sphere", "polygon", "ellipse", "two_sided", "diffuse", "specular", "fresnel", "many_lights"};
   for (const std::string& effect : effects) {
     if (std::find(kNames.begin(), kNames.end(), effect) == kNames.end()) {
       throw InputError(fmt::format("no effect \"{}\"; expected of {}", effect, fmt::join(kNames, ", ")));
@@ -329,8 +329,12 @@ Scene SceneOfEffects(const std::vector<std::string>& effects) {
   }
   const auto has = [&](const char* effect) { return std::find(effects.begin(), effects.end(), effect) != effects.end(); };
   Scene scene;
-  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
-    if (has(Name(shape))) scene.lights.emplace_back().shape = shape;
+  for (const LightShape shape : kLightShapes) {
+    if (!has(Name(shape)) || (shape == LightShape::kDisk && has("ellipse"))) continue;  // an ellipse is shaded as a disk
+    Light& light = scene.lights.emplace_back();
+    light.shape = shape;
+    if (shape == LightShape::kEllipse) light.half_size.y = 0.3;
+    if (shape == LightShape::kPolygon) SetCorners(light, {{-0.5, -0.4}, {0.5, -0.4}, {0.6, 0.2}, {0.0, 0.6}, {-0.6, 0.2}});
   }
   if (!scene.lights.empty()) {
     if (has("many_lights") && scene.lights.size() == 1) scene.lights.push_back(scene.lights[0]);

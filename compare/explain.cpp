@@ -14,7 +14,7 @@ namespace {
 Estimate Inverse(const Estimate& ratio) { return {1.0 / ratio.value, 1.0 / ratio.high, 1.0 / ratio.low}; }
 
 bool IsShape(const std::string& effect) {
-  return std::ranges::any_of(std::initializer_list<LightShape>{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere},
+  return std::ranges::any_of(kLightShapes,
                              [&](LightShape shape) { return effect == Name(shape); });
 }
 

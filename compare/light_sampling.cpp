@@ -64,17 +64,35 @@ std::optional<LightDirections> LightDirections::From(const glm::dvec3& position,
   }
   if (!(result.back_ > 0.0)) return std::nullopt;
   const double x = glm::dot(center, result.axis_[0]), y = glm::dot(center, result.axis_[1]);
-  if (light.shape == LightShape::kDisk) {
-    const double tilt = glm::dot(normal, light.normal),
-                 rise = light.half_size.x * std::sqrt(std::max(1.0 - tilt * tilt, 0.0));
+  if (light.shape == LightShape::kDisk || light.shape == LightShape::kEllipse) {
+    const double rise = std::hypot(light.half_size.x * glm::dot(normal, light.axis_x), light.half_size.y * glm::dot(normal, light.axis_y));
     if (glm::dot(center, normal) + rise <= 0.0) return std::nullopt;
-    result.cone_ = DiskCone(center, result.axis_[2], light.half_size.x);
+    result.cone_ = light.shape == LightShape::kDisk
+                       ? DiskCone(center, result.axis_[2], light.half_size.x)
+                       : EllipseCone(center, light.axis_x * light.half_size.x, light.axis_y * light.half_size.y, result.axis_[2]);
     result.solid_angle_ = kPi * result.cone_.sin_1 * result.cone_.sin_2;
     return result;
   }
   const double top = glm::dot(center, normal) + light.half_size.x * std::abs(glm::dot(light.axis_x, normal)) +
                      light.half_size.y * std::abs(glm::dot(light.axis_y, normal));
   if (top <= 0.0) return std::nullopt;
+  if (light.shape == LightShape::kPolygon) {
+    result.by_area_ = true;
+    result.corners_ = light.corners;
+    if (result.axis_[2] != light.normal) {
+      for (glm::dvec2& corner : result.corners_) corner.y = -corner.y;
+      std::reverse(result.corners_.begin(), result.corners_.end());
+    }
+    for (std::size_t i = 1; i + 1 < result.corners_.size(); ++i) {
+      const glm::dvec2 a = result.corners_[i] - result.corners_[0], b = result.corners_[i + 1] - result.corners_[0];
+      result.area_ += 0.5 * (a.x * b.y - a.y * b.x);
+      result.shares_.push_back(result.area_);
+    }
+    for (double& share : result.shares_) share /= result.area_;
+    const double distance2 = glm::dot(center, center);
+    result.solid_angle_ = result.area_ * result.back_ / (distance2 * std::sqrt(distance2));
+    return result;
+  }
   result.x0_ = x - light.half_size.x;
   result.x1_ = x + light.half_size.x;
   result.y0_ = y - light.half_size.y;
@@ -106,13 +124,23 @@ std::optional<LightDirections> LightDirections::From(const glm::dvec3& position,
 }
 
 LightDirections::Sample LightDirections::At(const glm::dvec2& u) const {
+  if (shape_ == LightShape::kPolygon) {
+    // A triangle by the shares of the area, then a point of it, even over the area.
+    const auto found = std::upper_bound(shares_.begin(), shares_.end() - 1, u.x);
+    const auto i = static_cast<std::size_t>(found - shares_.begin());
+    const double before = i == 0 ? 0.0 : shares_[i - 1], r = std::sqrt(std::clamp((u.x - before) / (shares_[i] - before), 0.0, 1.0));
+    const glm::dvec2 place = corners_[0] + r * (corners_[i + 1] - corners_[0] + u.y * (corners_[i + 2] - corners_[i + 1]));
+    const glm::dvec3 to = center_ + axis_[0] * place.x + axis_[1] * place.y;
+    const double distance = glm::length(to);
+    return {to / distance, distance, distance * distance * distance / (back_ * area_)};
+  }
   if (shape_ != LightShape::kRectangle) {
     const double radius = std::sqrt(u.x), phi = 2.0 * kPi * u.y;
     const double x = cone_.sin_1 * radius * std::cos(phi), y = cone_.sin_2 * radius * std::sin(phi);
     const double z = std::sqrt(std::max(1.0 - x * x - y * y, 1e-30));
     const glm::dvec3 direction = cone_.axis_1 * x + cone_.axis_2 * y + cone_.axis_3 * z;
     const double density = z / (kPi * cone_.sin_1 * cone_.sin_2);
-    if (shape_ == LightShape::kDisk)
+    if (IsFlat(shape_))
       return {direction, -back_ / std::min(glm::dot(direction, axis_[2]), -1e-30), density};
     const double along = glm::dot(center_, direction), radius2 = half_size_.x * half_size_.x;
     const double gap2 = std::max(radius2 - (glm::dot(center_, center_) - along * along), 0.0);
@@ -139,12 +167,24 @@ LightDirections::Sample LightDirections::At(const glm::dvec2& u) const {
 }
 
 std::optional<LightDirections::Sample> LightDirections::Towards(const glm::dvec3& direction) const {
+  if (shape_ == LightShape::kPolygon) {
+    const double facing = -glm::dot(direction, axis_[2]);
+    if (facing <= 0.0) return std::nullopt;
+    const double distance = back_ / facing;
+    const glm::dvec3 from_center = distance * direction - center_;
+    const glm::dvec2 place(glm::dot(from_center, axis_[0]), glm::dot(from_center, axis_[1]));
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const glm::dvec2 side = corners_[(i + 1) % corners_.size()] - corners_[i], at = place - corners_[i];
+      if (side.x * at.y - side.y * at.x < 0.0) return std::nullopt;
+    }
+    return Sample{direction, distance, distance * distance * distance / (back_ * area_)};
+  }
   if (shape_ != LightShape::kRectangle) {
     const double x = glm::dot(direction, cone_.axis_1) / cone_.sin_1,
                  y = glm::dot(direction, cone_.axis_2) / cone_.sin_2, z = glm::dot(direction, cone_.axis_3);
     if (z <= 0.0 || x * x + y * y >= 1.0) return std::nullopt;
     const double density = z / (kPi * cone_.sin_1 * cone_.sin_2);
-    if (shape_ == LightShape::kDisk) {
+    if (IsFlat(shape_)) {
       const double facing = -glm::dot(direction, axis_[2]);
       if (facing <= 0.0) return std::nullopt;
       return Sample{direction, back_ / facing, density};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "compare/closed_forms.h"
 #include "scenes/scene.h"
@@ -31,7 +32,7 @@ class LightDirections {
     double distance;       // m, to the light's surface
     double density;        // 1/sr
   };
-  // Rectangles by solid angle [Ureña et al. 2013], by area where they are tiny; disks and spheres evenly over
+  // Rectangles by solid angle [Ureña et al. 2013], by area where they are tiny; polygons by area; disks, ellipses and spheres evenly over
   // the projection of their cone along its axis. `u` in [0, 1)². Directions below the horizon are given too.
   Sample At(const glm::dvec2& u) const;
 
@@ -64,6 +65,9 @@ class LightDirections {
   // Rectangles: in the axes, from the point: x0 ≤ x ≤ x1, y0 ≤ y ≤ y1, z = −back_.
   double x0_ = 0.0, x1_ = 0.0, y0_ = 0.0, y1_ = 0.0, b0_ = 0.0, b1_ = 0.0, k_ = 0.0;
   bool by_area_ = false;
+  std::vector<glm::dvec2> corners_;     // of a polygon, in the axes about the centre, counter-clockwise
+  std::vector<double> shares_;          // of its area, up to and with each triangle about the first corner
+  double area_ = 0.0;                   // m², of a polygon
 };
 
 // Half vectors that the viewer sees, hence reflected directions, of a GGX lobe [Heitz 2018, by the spherical

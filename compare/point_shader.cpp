@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kColumns = 256;
 constexpr int kMostRows = 512;             // of pixels at a time: 23 MB of texels
-constexpr int kCaseRows = kLightRows + 3;  // CASE_ROWS of glsl/points.frag
+constexpr int kCaseRows = kLightRows + 3 + kCornerRows;  // CASE_ROWS of glsl/points.frag
 constexpr GLuint kFirstTableUnit = 3, kCasesUnit = 15;
 
 glm::dvec3 AsFloats(const glm::dvec3& v) {
@@ -31,9 +31,10 @@ glm::dvec3 AsFloats(const glm::dvec3& v) {
 // Everything on but shapes that no case has, the other side of lights, the loop, and apertures.
 EffectDefines EffectsOf(std::span<const PointCase> cases) {
   std::map<std::string, bool> forced = {{"two_sided", false}, {"many_lights", false}, {"aperture", false}};
-  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
+  for (const LightShape shape : kLightShapes) {
     forced[Name(shape)] = std::ranges::any_of(cases, [&](const PointCase& c) { return c.shape == shape; });
   }
+  forced["disk"] = forced["disk"] || forced["ellipse"];
   for (const std::string& name : EffectNames()) forced.emplace(name, true);
   return Defines(SceneEffects(Scene{}), forced);
 }
@@ -46,6 +47,7 @@ std::array<glm::vec4, kCaseRows> Texels(const PointCase& c) {
   texels[kLightRows] = glm::vec4(c.position, c.roughness);
   texels[kLightRows + 1] = glm::vec4(c.normal, c.f0);
   texels[kLightRows + 2] = glm::vec4(c.to_view, 0.0);
+  std::ranges::copy(CornerBlockRows({c.Light()}), texels.begin() + kLightRows + 3);
   return texels;
 }
 
@@ -58,6 +60,7 @@ PointCase PointCase::Rounded() const {
     *v = AsFloats(*v);
   }
   c.half_size = glm::dvec2(glm::vec2(half_size));
+  for (glm::dvec2& corner : c.corners) corner = glm::dvec2(glm::vec2(corner));
   for (double* x : {&c.roughness, &c.f0, &c.radiance}) *x = static_cast<float>(*x);
   return c;
 }
@@ -70,6 +73,7 @@ Light PointCase::Light() const {
   light.axis_y = axis_y;
   light.normal = light_normal;
   light.half_size = half_size;
+  light.corners = corners;
   light.radiance = glm::dvec3(radiance);
   return light;
 }

@@ -27,6 +27,7 @@ struct PointCase {
       light_normal{0.0, 0.0, -1.0};
   glm::dvec2 half_size{0.5};
   double radiance = 1.0;
+  std::vector<glm::dvec2> corners = {};  // of a polygon, as Light::corners
 
   PointCase Rounded() const;  // as the GL gets it: every number the nearest float
   arealab::Light Light() const;

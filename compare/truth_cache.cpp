@@ -134,6 +134,10 @@ void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels
     AddVector(hash, light.normal);
     hash.Value(light.half_size.x);
     hash.Value(light.half_size.y);
+    for (const glm::dvec2& corner : light.corners) {
+      hash.Value(corner.x);
+      hash.Value(corner.y);
+    }
     AddVector(hash, light.radiance);
   }
   hash.Bytes(pixels.position.data(), pixels.position.size() * sizeof(glm::vec4));

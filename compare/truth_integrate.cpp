@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
+#include <span>
 #include <vector>
 
 #include "compare/closed_forms.h"
@@ -563,18 +565,27 @@ bool MakeOutline(const ShadingPoint& point, const Light& light, Outline& outline
   glm::dvec3 mirror(-sin_v, 0.0, cos_v);
   glm::dvec3 center = local(light.center - point.position);
   bool mirror_inside = true;
-  if (light.shape == LightShape::kRectangle) {
-    glm::dvec3 a = local(light.axis_x) * light.half_size.x, b = local(light.axis_y) * light.half_size.y;
+  if (light.shape == LightShape::kRectangle || light.shape == LightShape::kPolygon) {
     double height = -glm::dot(center, local(light.normal));  // of the point above the lit side
     if (height == 0.0 || (height < 0.0 && !light.two_sided)) {
       return false;
     }
     // Counter-clockwise seen from outside the sphere of directions: as from behind the light.
-    std::array<glm::dvec3, 4> corners = {center - a - b, center - a + b, center + a + b, center + a - b};
-    if (height < 0.0) {
-      std::swap(corners[1], corners[3]);
+    std::array<glm::dvec3, kMostCorners> corners;
+    std::size_t count = 4;
+    if (light.shape == LightShape::kRectangle) {
+      glm::dvec3 a = local(light.axis_x) * light.half_size.x, b = local(light.axis_y) * light.half_size.y;
+      std::ranges::copy(std::array{center - a - b, center - a + b, center + a + b, center + a - b}, corners.begin());
+    } else {
+      count = light.corners.size();
+      glm::dvec3 x = local(light.axis_x), y = local(light.axis_y);
+      std::ranges::transform(light.corners | std::views::reverse, corners.begin(),
+                             [&](const glm::dvec2& c) { return center + x * c.x + y * c.y; });
     }
-    HorizonPolygon polygon = ClipToHorizon(corners);
+    if (height < 0.0) {
+      std::reverse(corners.begin() + 1, corners.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+    HorizonPolygon polygon = ClipToHorizon(std::span(corners.data(), count));
     if (polygon.count < 3) {
       return false;
     }
@@ -590,13 +601,16 @@ bool MakeOutline(const ShadingPoint& point, const Light& light, Outline& outline
     }
   } else {
     LightCone cone;
-    if (light.shape == LightShape::kDisk) {
+    if (IsFlat(light.shape)) {
       glm::dvec3 normal = local(light.normal);
       double height = -glm::dot(center, normal);
       if (height == 0.0 || (height < 0.0 && !light.two_sided)) {
         return false;
       }
-      cone = DiskCone(center, height < 0.0 ? -normal : normal, light.half_size.x);
+      normal = height < 0.0 ? -normal : normal;
+      cone = light.shape == LightShape::kDisk
+                 ? DiskCone(center, normal, light.half_size.x)
+                 : EllipseCone(center, local(light.axis_x) * light.half_size.x, local(light.axis_y) * light.half_size.y, normal);
     } else {
       if (glm::length(center) <= light.half_size.x) {
         return false;

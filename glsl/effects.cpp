@@ -34,20 +34,40 @@ std::string Called(const Light& light, std::size_t i) {
   return light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light \"{}\"", light.name);
 }
 
-bool IsFlat(const Light& light) { return light.shape != LightShape::kSphere; }
+
+std::string WithArticle(LightShape shape) { return fmt::format("{} {}", shape == LightShape::kEllipse ? "an" : "a", Name(shape)); }
 
 double BoundingRadius(const Light& light) {
-  return light.shape == LightShape::kRectangle ? std::hypot(light.half_size.x, light.half_size.y) : light.half_size.x;
+  switch (light.shape) {
+    case LightShape::kRectangle:
+      return std::hypot(light.half_size.x, light.half_size.y);
+    case LightShape::kDisk:
+    case LightShape::kSphere:
+    case LightShape::kEllipse:
+      return std::max(light.half_size.x, light.half_size.y);
+    case LightShape::kPolygon:
+      break;
+  }
+  double radius = 0.0;
+  for (const glm::dvec2& corner : light.corners) radius = std::max(radius, glm::length(corner));
+  return radius;
 }
 
-// How far the light reaches from its centre along `direction` of any length, times that length; convex in it.
+// How far the light reaches from its centre along `direction` of any length or against it, times that length; convex in it.
 double Reach(const Light& light, const glm::dvec3& direction) {
   const double x = light.half_size.x * glm::dot(direction, light.axis_x);
   const double y = light.half_size.y * glm::dot(direction, light.axis_y);
   switch (light.shape) {
     case LightShape::kRectangle:
       return std::abs(x) + std::abs(y);
+    case LightShape::kPolygon: {
+      double reach = 0.0;
+      const glm::dvec2 slope(glm::dot(direction, light.axis_x), glm::dot(direction, light.axis_y));
+      for (const glm::dvec2& corner : light.corners) reach = std::max(reach, std::abs(glm::dot(corner, slope)));
+      return reach;
+    }
     case LightShape::kDisk:
+    case LightShape::kEllipse:
       return std::hypot(x, y);
     case LightShape::kSphere:
       return light.half_size.x * glm::length(direction);
@@ -120,20 +140,26 @@ class Analysis {
 
   Verdict Shape(LightShape shape) const {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
-      if (lights_[i].shape == shape) return {true, fmt::format("{} is a {}", Called(lights_[i], i), Name(shape))};
+      if (lights_[i].shape == shape) return {true, fmt::format("{} is {}", Called(lights_[i], i), WithArticle(shape))};
     }
-    return {false, fmt::format("no light that emits is a {}", Name(shape))};
+    return {false, fmt::format("no light that emits is {}", WithArticle(shape))};
+  }
+
+  // An ellipse is shaded by the text for disks.
+  Verdict Disk() const {
+    const Verdict ellipse = Shape(LightShape::kEllipse);
+    return ellipse.on ? ellipse : Shape(LightShape::kDisk);
   }
 
   Verdict TwoSided() {
-    if (std::none_of(lights_.begin(), lights_.end(), [](const Light& light) { return light.two_sided && IsFlat(light); })) {
+    if (std::none_of(lights_.begin(), lights_.end(), [](const Light& light) { return light.two_sided && IsFlat(light.shape); })) {
       return {false, "no light is lit on both sides"};
     }
     return OfGeometry(&GeometryNeeds::two_sided, "whatever is lit by a two-sided light lies before its front");
   }
 
   Verdict Behind() {
-    if (std::none_of(lights_.begin(), lights_.end(), IsFlat)) return {false, "spheres have no back"};
+    if (std::none_of(lights_.begin(), lights_.end(), [](const Light& light) { return IsFlat(light.shape); })) return {false, "spheres have no back"};
     return OfGeometry(&GeometryNeeds::behind, "every surface lies before the lit side of every light");
   }
 
@@ -231,8 +257,8 @@ class Analysis {
   GeometryNeeds LookAtGeometry() const {
     GeometryNeeds needs;
     for (const Light& light : lights_) {
-      needs.any_flat = needs.any_flat || IsFlat(light);
-      needs.any_two_sided = needs.any_two_sided || (IsFlat(light) && light.two_sided);
+      needs.any_flat = needs.any_flat || IsFlat(light.shape);
+      needs.any_two_sided = needs.any_two_sided || (IsFlat(light.shape) && light.two_sided);
     }
     for (const Mesh& mesh : scene_.meshes) {
       const Material& material = scene_.materials.at(static_cast<std::size_t>(mesh.material));
@@ -272,7 +298,7 @@ class Analysis {
       const Light& light = lights_[l];
       const double radius = BoundingRadius(light);
       const double margin = kMargin * (patch.size + glm::length(light.center) + radius);
-      if (IsFlat(light)) {
+      if (IsFlat(light.shape)) {
         Range before;
         for (const glm::dvec3& position : patch.position) before.Include(glm::dot(light.normal, position - light.center));
         if (!(before.low > margin)) {
@@ -313,8 +339,10 @@ struct Rule {
 
 constexpr Rule kRules[] = {
     {"rectangle", [](Analysis& scene) { return scene.Shape(LightShape::kRectangle); }},
-    {"disk", [](Analysis& scene) { return scene.Shape(LightShape::kDisk); }},
+    {"disk", [](Analysis& scene) { return scene.Disk(); }},
     {"sphere", [](Analysis& scene) { return scene.Shape(LightShape::kSphere); }},
+    {"polygon", [](Analysis& scene) { return scene.Shape(LightShape::kPolygon); }},
+    {"ellipse", [](Analysis& scene) { return scene.Shape(LightShape::kEllipse); }},
     {"two_sided", [](Analysis& scene) { return scene.TwoSided(); }},
     {"behind", [](Analysis& scene) { return scene.Behind(); }},
     {"turned_away", [](Analysis& scene) { return scene.TurnedAway(); }},

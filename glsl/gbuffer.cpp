@@ -89,7 +89,12 @@ Mesh EmitterMesh(const Light& light) {
       add(-1.0, 1.0);
       mesh.indices = {0, 1, 2, 0, 2, 3};
       break;
+    case LightShape::kPolygon:
+      for (const glm::dvec2& corner : light.corners) add(corner.x / light.half_size.x, corner.y / light.half_size.y);
+      for (std::uint32_t i = 1; i + 1 < light.corners.size(); ++i) mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
+      break;
     case LightShape::kDisk:
+    case LightShape::kEllipse:
       for (int i = 0; i < kDiskSegments; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / kDiskSegments;
         add(std::cos(angle), std::sin(angle));
@@ -281,7 +286,7 @@ GBuffer::Geometry GBuffer::Gather(const Scene& scene, const glm::dvec3& camera) 
   }
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    const bool lit = light.two_sided || light.shape == LightShape::kSphere ||
+    const bool lit = light.two_sided || !IsFlat(light.shape) ||
                      glm::dot(light.normal, camera - light.center) > 0.0;
     const float number = 2.0f + static_cast<float>(i);
     geometry.Add(EmitterMesh(light), {}, lit ? number : -number);

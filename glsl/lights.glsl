@@ -11,12 +11,14 @@ Light LoadLight(int i) {
   vec4 row4 = LightRow(i, 4);
   Light light;
   // Where the scene has one shape only it is a constant, and branches on it vanish.
-#if EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_SPHERE
+#if EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_SPHERE && !EFFECT_POLYGON
   light.shape = SHAPE_RECTANGLE;
-#elif EFFECT_DISK && !EFFECT_RECTANGLE && !EFFECT_SPHERE
+#elif EFFECT_DISK && !EFFECT_RECTANGLE && !EFFECT_SPHERE && !EFFECT_POLYGON
   light.shape = SHAPE_DISK;
-#elif EFFECT_SPHERE && !EFFECT_RECTANGLE && !EFFECT_DISK
+#elif EFFECT_SPHERE && !EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_POLYGON
   light.shape = SHAPE_SPHERE;
+#elif EFFECT_POLYGON && !EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_SPHERE
+  light.shape = SHAPE_POLYGON;
 #else
   light.shape = int(row0.w);
 #endif
@@ -32,7 +34,13 @@ Light LoadLight(int i) {
   light.half_size = vec2(row2.w, row3.w);
   light.half_axis_x = row4.xyz;
   light.area = row4.w;
-  light.half_axis_y = LightRow(i, 5).xyz;
+  vec4 row5 = LightRow(i, 5);
+  light.half_axis_y = row5.xyz;
+#if EFFECT_POLYGON
+  light.index = i;
+  light.corner_count = int(row5.w);
+  light.turned = false;
+#endif
 #if EFFECT_LIGHT_COLOR
   light.radiance = LightRow(i, 6).xyz;
 #else
@@ -47,7 +55,7 @@ Light LoadLight(int i) {
 // A light without an area is none, and one that is thinner than 1e-7 of its length neither: no float tells its sides apart.
 bool FaceLight(inout Light light, vec3 position) {
   if (light.area <= max(1e-7 * (light.products.x + light.products.y), 1e-30)) return false;
-#if EFFECT_BEHIND && (EFFECT_RECTANGLE || EFFECT_DISK)
+#if EFFECT_BEHIND && (EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON)
   if (light.shape != SHAPE_SPHERE) {
     float height = dot(light.normal, position - light.center);
 #if EFFECT_TWO_SIDED
@@ -55,6 +63,9 @@ bool FaceLight(inout Light light, vec3 position) {
       light.normal = -light.normal;
       light.axis_x = -light.axis_x;
       light.half_axis_x = -light.half_axis_x;
+#if EFFECT_POLYGON
+      light.turned = true;
+#endif
       height = -height;
     }
 #endif
@@ -63,3 +74,19 @@ bool FaceLight(inout Light light, vec3 position) {
 #endif
   return true;
 }
+
+#if EFFECT_POLYGON
+// Corner i of a polygon, m, from its centre along axis_x and axis_y, counter-clockwise seen from the lit side.
+vec2 LightCorner(Light light, int i) {
+  int k = light.turned ? light.corner_count - 1 - i : i;
+  vec4 row = CornerRow(light.index, k / 2);
+  vec2 corner = k % 2 == 0 ? vec2(row.x, row.y) : vec2(row.z, row.w);
+  return light.turned ? vec2(-corner.x, corner.y) : corner;
+}
+
+// The same in the world.
+vec3 CornerDirection(Light light, int i) {
+  vec2 corner = LightCorner(light, i);
+  return light.axis_x * corner.x + light.axis_y * corner.y;
+}
+#endif

@@ -2,22 +2,19 @@
 // The outline of a light's visible part on the sphere of directions, as arcs counter-clockwise seen from outside, and its form
 // factor by Lambert's contour integral. Frame: the shading normal is z. The same mathematics as compare/closed_forms.cpp.
 #include "directions.glsl"
+#include "elliptic_cone.glsl"
 #include "polar_rule.glsl"
 
-// The elliptic cone of directions that a disk or a sphere covers, as in compare/closed_forms.h: axis_1 is the wider one.
-struct Cone {
-  vec3 axis_1;
-  vec3 axis_2;
-  vec3 axis_3;
-  float sin_1;
-  float cos_1;
-  float sin_2;
-  float cos_2;
-};
+// Of a convex polygon, one more than the light's own where the horizon cuts it, and one to spare.
+#if EFFECT_POLYGON
+#define OUTLINE_CORNERS 10
+#else
+#define OUTLINE_CORNERS 6
+#endif
 
 // Chords between corners, then quarters of a cone's outline from angle begin to end.
 struct Outline {
-  vec3 corners[6];  // unit; chord i runs from corner i to the next
+  vec3 corners[OUTLINE_CORNERS];  // unit; chord i runs from corner i to the next
   int corner_count;
   int chord_count;  // as many as corners, or 1 where a cone is cut by the horizon
   Cone cone;
@@ -67,28 +64,8 @@ Arc OutlineArc(Outline outline, int i) {
   return arc;
 }
 
-// center, half_a, half_b: m, local; the light faces the point. Corners are counter-clockwise seen from outside.
-void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(Outline) outline) {
-  // Sutherland and Hodgman at the horizon; a convex quadrilateral keeps at most five corners.
-  vec3 corners[6];
-  int count = 0;
-  for (int i = 0; i < 4; ++i) {
-    float a = i < 2 ? -1.0 : 1.0;
-    float b = (i == 1 || i == 2) ? 1.0 : -1.0;
-    float c = (i == 0 || i == 3) ? -1.0 : 1.0;
-    float d = (i == 0 || i == 1) ? 1.0 : -1.0;
-    vec3 p = center + a * half_a + b * half_b;
-    vec3 q = center + c * half_a + d * half_b;
-    if (p.z >= 0.0) {
-      corners[count] = p;
-      count = count + 1;
-    }
-    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
-      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
-      corners[count] = vec3(cut.x, cut.y, 0.0);
-      count = count + 1;
-    }
-  }
+// The chords between `count` corners at or above the horizon, m, and their form factor; nothing of fewer than three.
+void ChordOutline(vec3 corners[OUTLINE_CORNERS], int count, vec3 mirror, INOUT(Outline) outline) {
   if (count >= 3) {
     for (int i = 0; i < count; ++i) {
       vec3 p = corners[i];
@@ -113,6 +90,56 @@ void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(
     outline.form_factor = sum / kPi;
   }
 }
+
+// center, half_a, half_b: m, local; the light faces the point. Corners are counter-clockwise seen from outside.
+void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(Outline) outline) {
+  // Sutherland and Hodgman at the horizon; a convex quadrilateral keeps at most five corners.
+  vec3 corners[OUTLINE_CORNERS];
+  int count = 0;
+  for (int i = 0; i < 4; ++i) {
+    float a = i < 2 ? -1.0 : 1.0;
+    float b = (i == 1 || i == 2) ? 1.0 : -1.0;
+    float c = (i == 0 || i == 3) ? -1.0 : 1.0;
+    float d = (i == 0 || i == 1) ? 1.0 : -1.0;
+    vec3 p = center + a * half_a + b * half_b;
+    vec3 q = center + c * half_a + d * half_b;
+    if (p.z >= 0.0) {
+      corners[count] = p;
+      count = count + 1;
+    }
+    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
+      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
+      corners[count] = vec3(cut.x, cut.y, 0.0);
+      count = count + 1;
+    }
+  }
+  ChordOutline(corners, count, mirror, outline);
+}
+
+#if EFFECT_POLYGON
+// The same of a polygon: center, x_axis and y_axis are local.
+void PolygonOutline(Light light, vec3 center, vec3 x_axis, vec3 y_axis, vec3 mirror, INOUT(Outline) outline) {
+  vec3 corners[OUTLINE_CORNERS];
+  int count = 0;
+  vec2 first = LightCorner(light, 0);
+  vec3 p = center + x_axis * first.x + y_axis * first.y;
+  for (int i = light.corner_count - 1; i >= 0; --i) {  // clockwise seen from the lit side
+    vec2 corner = LightCorner(light, i);
+    vec3 q = center + x_axis * corner.x + y_axis * corner.y;
+    if (p.z >= 0.0) {
+      corners[count] = p;
+      count = count + 1;
+    }
+    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
+      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
+      corners[count] = vec3(cut.x, cut.y, 0.0);
+      count = count + 1;
+    }
+    p = q;
+  }
+  ChordOutline(corners, count, mirror, outline);
+}
+#endif
 
 // center: m; normal: unit, towards the origin's side; radius: m. In the plane of centre and normal c = (ρ, h), and the cone's
 // dual matrix c cᵀ − R²(1 − n nᵀ) has there the eigenvalues μ > 0 and −R²h²/μ; across it −R².

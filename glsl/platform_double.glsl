@@ -11,6 +11,9 @@ dvec4 FetchAperture(ivec2 pixel) { return dvec4(texelFetch(gbuffer_aperture, pix
 #endif
 dvec3 ViewPosition() { return dvec3(view_position); }
 dvec4 LightRow(int light, int row) { return dvec4(light_rows[light * LIGHT_ROWS + row]); }
+#if EFFECT_POLYGON
+dvec4 CornerRow(int light, int row) { return dvec4(corner_rows[light * CORNER_ROWS + row]); }
+#endif
 
 // Bilinear, clamped to the edge; texel (i, j)'s centre is uv = (i + ½, j + ½) / size. By hand: samplers weigh in float.
 dvec4 SampleTable(sampler2D table, dvec2 uv) {

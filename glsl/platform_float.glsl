@@ -10,6 +10,9 @@ vec4 FetchAperture(ivec2 pixel) { return texelFetch(gbuffer_aperture, pixel, 0);
 #endif
 vec3 ViewPosition() { return view_position; }
 vec4 LightRow(int light, int row) { return light_rows[light * LIGHT_ROWS + row]; }
+#if EFFECT_POLYGON
+vec4 CornerRow(int light, int row) { return corner_rows[light * CORNER_ROWS + row]; }
+#endif
 
 // Bilinear, clamped to the edge; texel (i, j)'s centre is uv = (i + ½, j + ½) / size.
 vec4 SampleTable(sampler2D table, vec2 uv) { return textureLod(table, uv, 0.0); }

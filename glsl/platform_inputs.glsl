@@ -15,6 +15,13 @@ layout(std140, binding = 0) uniform LightBlock {
   vec4 light_rows[MAX_LIGHTS * LIGHT_ROWS];  // what each row holds: glsl/light_block.h
 };
 
+#if EFFECT_POLYGON
+#define CORNER_ROWS 4
+layout(std140, binding = 1) uniform CornerBlock {
+  vec4 corner_rows[MAX_LIGHTS * CORNER_ROWS];
+};
+#endif
+
 uniform vec3 view_position;  // m, world
 uniform int light_count;
 

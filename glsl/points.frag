@@ -5,14 +5,15 @@
 layout(binding = 15) uniform sampler2D cases;  // a case is a column of CASE_ROWS texels
 uniform bool as_lighting_pass;                 // black where lighting.frag shades nothing
 
-#define CASE_ROWS 11
+#define CASE_ROWS 15
 vec4 CaseRow(int row) {
   vec4 texel = texelFetch(cases, ivec2(int(gl_FragCoord.x), int(gl_FragCoord.y) * CASE_ROWS + row), 0);
   return texel;
 }
 
-// Rows 0 to 7 are the light block's of the one light.
+// Rows 0 to 7 are the light block's of the one light, 11 to 14 its corners.
 #define LightRow(light, row) CaseRow(row)
+#define CornerRow(light, row) CaseRow(11 + row)
 #include "lights.glsl"
 #include "technique"
 

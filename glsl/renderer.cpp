@@ -30,6 +30,7 @@ struct Renderer::Impl {
         gbuffer(gl, library),
         vertex_array(MakeVertexArray(gl)),
         lights(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kLightRows, nullptr)),
+        corners(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kCornerRows, nullptr)),
         fullscreen(Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat)) {}
 
   // A technique's table, decoded and uploaded again only where its bytes have changed.
@@ -59,6 +60,7 @@ struct Renderer::Impl {
   GBuffer gbuffer;
   GlObject vertex_array;  // empty: core contexts draw with one only
   GlObject lights;
+  GlObject corners;
   ExpandedSource fullscreen;
 
   glm::ivec2 size{0};
@@ -174,6 +176,7 @@ void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) const {
     gl.BindTextureUnit(kFirstTableUnit + static_cast<GLuint>(i), pass.tables[i]);
   }
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, lights.id());
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, 1, corners.id());
   const bool part = rows < size.y;
   if (part) {
     gl.Enable(GL_SCISSOR_TEST);
@@ -229,6 +232,8 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   impl_->passes.clear();
   impl_->gl.NamedBufferSubData(impl_->lights.id(), 0,
                                static_cast<GLsizeiptr>(rows.size() * sizeof(glm::vec4)), rows.data());
+  const std::vector<glm::vec4> corners = CornerBlockRows(lights);
+  impl_->gl.NamedBufferSubData(impl_->corners.id(), 0, static_cast<GLsizeiptr>(corners.size() * sizeof(glm::vec4)), corners.data());
   return impl_->gbuffer.pixels();
 }
 

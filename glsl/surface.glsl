@@ -17,7 +17,7 @@ struct Surface {
 
 // Computed once per light on the host, in double, then rounded; the same for every technique.
 struct Light {
-  int shape;          // SHAPE_RECTANGLE, SHAPE_DISK or SHAPE_SPHERE
+  int shape;          // one of SHAPE_*
   bool two_sided;
   vec3 center;        // m, world
   vec3 normal;        // unit, towards the lit side; right-handed: axis_x × axis_y
@@ -25,9 +25,14 @@ struct Light {
   vec3 axis_y;        // unit
   vec3 half_axis_x;   // m: A = axis_x · half_size.x
   vec3 half_axis_y;   // m: B = axis_y · half_size.y
-  vec2 half_size;     // m; disk and sphere: the radius, twice
+  vec2 half_size;     // m; disk and sphere: the radius, twice; polygon: how far its corners reach
   float area;         // m², of one side; sphere: πR², its cross-section
   vec3 radiance;      // W/(m² sr) or cd/m², linear sRGB
+#if EFFECT_POLYGON
+  int index;          // in the light block, whose corners LightCorner gives
+  int corner_count;   // of a polygon
+  bool turned;        // whether FaceLight has turned the frame
+#endif
   vec3 products;      // m²: half_size.x², half_size.y², 2 · half_size.x · half_size.y
 };
 
@@ -38,8 +43,9 @@ struct Radiance {
 };
 
 #define SHAPE_RECTANGLE 0
-#define SHAPE_DISK 1
+#define SHAPE_DISK 1  // and ellipses
 #define SHAPE_SPHERE 2
+#define SHAPE_POLYGON 3
 
 // The GGX peak 1/(π α²) is 3e7 there: safe in float32.
 const float kMinAlpha = 1e-4;

@@ -24,7 +24,7 @@ constexpr std::string_view kHeaderEnd = "---*/";
 // The header's first TOML line is the file's second: added to every line that the TOML reader reports.
 constexpr int kHeaderOffset = 1;
 
-const std::vector<LightShape> kShapes{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere};
+const std::vector<LightShape> kShapes(std::begin(kLightShapes), std::end(kLightShapes));
 const std::vector<std::string> kLobes{"diffuse", "specular"};
 // "ggx" and the other choices of a scene.
 std::vector<std::string> BrdfNames() {
@@ -33,8 +33,9 @@ std::vector<std::string> BrdfNames() {
   return names;
 }
 // What a technique may claim to be exact in: the claims that a test can check against the truth.
-const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle",
-                                       "ggx_disk",          "ggx_sphere",   "point_limit"};
+const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_polygon",
+                                       "lambert_ellipse",   "ggx_rectangle", "ggx_disk",      "ggx_sphere",
+                                       "ggx_polygon",       "ggx_ellipse",   "point_limit"};
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
                                                 "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "visibility"};

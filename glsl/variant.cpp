@@ -96,6 +96,10 @@ const char* PluralName(LightShape shape) {
       return "disks";
     case LightShape::kSphere:
       return "spheres";
+    case LightShape::kPolygon:
+      return "polygons";
+    case LightShape::kEllipse:
+      return "ellipses";
   }
   return "";
 }
@@ -167,7 +171,7 @@ Variant WithAllEffects(Variant variant) {
   const Technique& technique = *variant.technique;
   for (const std::string& effect : EffectNames()) variant.effects[effect] = true;
   variant.effects.erase("aperture");
-  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
+  for (const LightShape shape : kLightShapes) {
     if (std::ranges::find(technique.shapes, shape) == technique.shapes.end()) variant.effects.erase(Name(shape));
   }
   for (const Need& need : kNeeds) {
@@ -305,8 +309,8 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
     if (std::find(shapes.begin(), shapes.end(), light.shape) != shapes.end()) continue;
     const std::string who =
         light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light \"{}\"", light.name);
-    return fmt::format("{} shades {}; {} is a {}", variant.technique->name, ShapeList(shapes), who,
-                       Name(light.shape));
+    return fmt::format("{} shades {}; {} is {} {}", variant.technique->name, ShapeList(shapes), who,
+                       light.shape == LightShape::kEllipse ? "an" : "a", Name(light.shape));
   }
   for (const auto& [choice, needed] : NeedsOf(variant, "shape")) {
     for (const Light& light : scene.lights) {

@@ -647,41 +647,80 @@ class SceneReader {
     }
   }
 
+  static std::vector<std::string> ShapeNames() {
+    std::vector<std::string> names;
+    for (const LightShape shape : kLightShapes) names.emplace_back(Name(shape));
+    return names;
+  }
+
+  static const char* SizeKey(LightShape shape) {
+    switch (shape) {
+      case LightShape::kRectangle:
+        return "size";
+      case LightShape::kDisk:
+      case LightShape::kSphere:
+        return "radius";
+      case LightShape::kPolygon:
+        return "corners";
+      case LightShape::kEllipse:
+        return "radii";
+    }
+    return "";
+  }
+
   void ReadLight(const Fields& fields) {
-    const std::string shape = fields.Word("shape", {"rectangle", "disk", "sphere"}, std::nullopt);
+    const std::string shape = fields.Word("shape", ShapeNames(), std::nullopt);
     std::vector<std::string> known = {"name",     "shape", "position",  "color",
                                       "radiance", "flux",  "luminance", "luminous_flux"};
-    known.push_back(shape == "rectangle" ? "size" : "radius");
-    if (shape != "sphere") known.insert(known.end(), {"target", "normal", "rotation", "up", "two_sided"});
-    fields.Allow(known);
     Light light;
+    light.shape = *std::find_if(std::begin(kLightShapes), std::end(kLightShapes), [&](LightShape s) { return shape == Name(s); });
+    known.emplace_back(SizeKey(light.shape));
+    if (IsFlat(light.shape)) known.insert(known.end(), {"target", "normal", "rotation", "up", "two_sided"});
+    fields.Allow(known);
     light.name = UniqueName(fields, light_names_, fmt::format("light {}", scene_.lights.size() + 1));
-    light.shape = shape == "rectangle" ? LightShape::kRectangle
-                  : shape == "disk"    ? LightShape::kDisk
-                                       : LightShape::kSphere;
     light.center = fields.Numbers<3>(fields.Require("position", "an array of 3 numbers, metres"), "position",
                                      kCoordinate);
     light.two_sided = fields.Bool("two_sided", false);
-    ReadLightSize(fields, light);
-    if (shape != "sphere") ReadLightAxes(fields, light);
+    if (light.shape != LightShape::kPolygon) ReadLightSize(fields, light);
+    if (IsFlat(light.shape)) ReadLightAxes(fields, light);
+    if (light.shape == LightShape::kPolygon) ReadCorners(fields, light);
     ReadEmission(fields, light);
     scene_.lights.push_back(std::move(light));
   }
 
   static void ReadLightSize(const Fields& fields, Light& light) {
-    const char* key = light.shape == LightShape::kRectangle ? "size" : "radius";
-    const toml::node& node = fields.Require(
-        key, light.shape == LightShape::kRectangle ? "[width, height] in metres" : kLength.expected);
+    const char* key = SizeKey(light.shape);
+    const bool two = light.shape == LightShape::kRectangle || light.shape == LightShape::kEllipse;
+    const double scale = light.shape == LightShape::kRectangle ? 0.5 : 1.0;
+    const toml::node& node = fields.Require(key, light.shape == LightShape::kRectangle ? "[width, height] in metres"
+                                                 : two                                 ? "[a, b], half axes in metres"
+                                                                                       : kLength.expected);
     // Zero gets a sentence of its own: it is what people try for a point light.
     const Quantity from_zero{0.0, kLength.max, kLength.expected};
-    const glm::dvec2 size = light.shape == LightShape::kRectangle
-                                ? 0.5 * fields.Numbers<2>(node, key, from_zero)
-                                : glm::dvec2(fields.Number(node, key, from_zero));
+    const glm::dvec2 size = two ? scale * fields.Numbers<2>(node, key, from_zero) : glm::dvec2(fields.Number(node, key, from_zero));
     if (size.x == 0.0 || size.y == 0.0) {
       fields.Fail(node, fmt::format("{} has no area; expected {}", fields.title(), kLength.expected));
     }
-    light.half_size = light.shape == LightShape::kRectangle ? 0.5 * fields.Numbers<2>(node, key, kLength)
-                                                            : glm::dvec2(fields.Number(node, key, kLength));
+    light.half_size = two ? scale * fields.Numbers<2>(node, key, kLength) : glm::dvec2(fields.Number(node, key, kLength));
+  }
+
+  // After the axes: the corners lie along them.
+  static void ReadCorners(const Fields& fields, Light& light) {
+    const std::string expected =
+        fmt::format("[[x, y], …], the 3 to {} corners of a convex outline in metres, no three in a line", kMostCorners);
+    const toml::node& node = fields.Require("corners", expected);
+    const toml::array* array = node.as_array();
+    if (!array) fields.FailType(node, "corners", expected);
+    std::vector<glm::dvec2> corners;
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      corners.push_back(fields.Numbers<2>(*array->get(i), fmt::format("corners[{}]", i), kCoordinate));
+    }
+    const auto fail = [&](const std::string& what) { fields.Fail(node, fmt::format("{}: {}; expected {}", fields.title(), what, expected)); };
+    if (const std::optional<std::string> why = WhyNoPolygon(corners)) fail(*why);
+    SetCorners(light, std::move(corners));
+    if (light.half_size.x < kLength.min || light.half_size.y < kLength.min || light.Area() < kLength.min * kLength.min) {
+      fail("it has no area");
+    }
   }
 
   static void ReadLightAxes(const Fields& fields, Light& light) {

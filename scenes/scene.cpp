@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <glm/gtc/constants.hpp>
 
@@ -39,6 +40,10 @@ const char* Name(LightShape shape) {
       return "disk";
     case LightShape::kSphere:
       return "sphere";
+    case LightShape::kPolygon:
+      return "polygon";
+    case LightShape::kEllipse:
+      return "ellipse";
   }
   return "";
 }
@@ -65,6 +70,63 @@ double Luminance(const glm::dvec3& color) {
   return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));  // [ITU-R BT.709-6, item 3.2]
 }
 
+namespace {
+
+double Cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+// Positive where the corners run counter-clockwise; triangles about the first, so that far corners keep their digits.
+double TwiceArea(const std::vector<glm::dvec2>& corners) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += Cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
+  return sum;
+}
+
+// The sine of the angle at a corner below which three lie in a line: float tells no smaller one from 0.
+constexpr double kLeastBend = 1e-5;
+
+}  // namespace
+
+std::optional<std::string> WhyNoPolygon(const std::vector<glm::dvec2>& corners) {
+  const std::size_t count = corners.size();
+  if (count < 3) return fmt::format("{} corners enclose nothing", count);
+  if (count > kMostCorners) return fmt::format("{} corners are too many", count);
+  double turned = 0.0;
+  double sense = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t before = (i + count - 1) % count;
+    const glm::dvec2 here = corners[i] - corners[before], next = corners[(i + 1) % count] - corners[i];
+    if (here == glm::dvec2(0.0)) return fmt::format("corners {} and {} are the same", before + 1, i + 1);
+    const double bend = Cross(glm::normalize(here), glm::normalize(next));
+    if (next != glm::dvec2(0.0) && std::abs(bend) < kLeastBend) {
+      return fmt::format("corner {} lies in a line with its neighbours", i + 1);
+    }
+    if (bend * sense < 0.0) return fmt::format("the outline turns in at corner {}", i + 1);
+    sense = bend;
+    turned += std::atan2(bend, glm::dot(here, next) / (glm::length(here) * glm::length(next)));
+  }
+  if (std::abs(turned) > 3.0 * glm::pi<double>()) return "the outline crosses itself";  // a convex one turns by 2π
+  return std::nullopt;
+}
+
+void SetCorners(Light& light, std::vector<glm::dvec2> corners) {
+  if (TwiceArea(corners) < 0.0) std::reverse(corners.begin() + 1, corners.end());
+  glm::dvec2 moment(0.0);  // of the triangles about the first corner, over it
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const glm::dvec2 a = corners[i] - corners[0], b = corners[i + 1] - corners[0];
+    moment += Cross(a, b) * (a + b) / 3.0;
+  }
+  const double area = TwiceArea(corners);
+  const glm::dvec2 centroid = corners[0] + (area > 0.0 ? moment / area : glm::dvec2(0.0));
+  light.shape = LightShape::kPolygon;
+  light.center += centroid.x * light.axis_x + centroid.y * light.axis_y;
+  light.half_size = glm::dvec2(0.0);
+  for (glm::dvec2& corner : corners) {
+    corner -= centroid;
+    light.half_size = glm::max(light.half_size, glm::abs(corner));
+  }
+  light.corners = std::move(corners);
+}
+
 double Light::Area() const {
   const double pi = glm::pi<double>();
   const double sides = two_sided ? 2.0 : 1.0;
@@ -72,7 +134,10 @@ double Light::Area() const {
     case LightShape::kRectangle:
       return sides * 4.0 * half_size.x * half_size.y;
     case LightShape::kDisk:
+    case LightShape::kEllipse:
       return sides * pi * half_size.x * half_size.y;
+    case LightShape::kPolygon:
+      return sides * 0.5 * TwiceArea(corners);
     case LightShape::kSphere:
       return 4.0 * pi * half_size.x * half_size.x;
   }

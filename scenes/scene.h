@@ -14,10 +14,17 @@ namespace arealab {
 
 enum class Units { kRadiometric, kPhotometric };  // of radiance: W/(m² sr), or cd/m² (nits)
 
-enum class LightShape { kRectangle, kDisk, kSphere };
+enum class LightShape { kRectangle, kDisk, kSphere, kPolygon, kEllipse };
+constexpr LightShape kLightShapes[] = {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere, LightShape::kPolygon,
+                                       LightShape::kEllipse};
 
-// "rectangle", "disk", "sphere": as written in scene files, technique headers and results.
+// "rectangle", "disk", "sphere", "polygon", "ellipse": as written in scene files, technique headers and results.
 const char* Name(LightShape shape);
+
+// Lies in a plane and has a lit side.
+constexpr bool IsFlat(LightShape shape) { return shape != LightShape::kSphere; }
+
+constexpr std::size_t kMostCorners = 8;  // of a polygon
 
 // The specular BRDF of a scene's surfaces, for Fresnel 1; its formulas and sources: glsl/brdf/.
 enum class Brdf { kGgx, kGgxSeparable, kBeckmann, kBlinnPhong, kWard, kPhong };
@@ -40,13 +47,22 @@ struct Light {
   glm::dvec3 axis_y{0.0, 1.0, 0.0};
   glm::dvec3 normal{0.0, 0.0, 1.0};
   glm::dvec2 half_size{
-      0.5};  // m: half width and half height along the axes; disk and sphere: the radius, twice
+      0.5};  // m: half width and half height along the axes; disk and sphere: the radius, twice; ellipse: its half axes;
+             // polygon: how far its corners reach along the axes
+  // Polygon: m, from the centre along axis_x and axis_y, counter-clockwise seen from the lit side; the centre is its centroid.
+  std::vector<glm::dvec2> corners;
   glm::dvec3 radiance{1.0};  // in the scene's unit, linear sRGB primaries
   bool two_sided = false;
 
   double Area() const;  // m², of the lit side or sides together; sphere: 4πR²
   double Flux() const;  // luminance of radiance × π × Area(): W or lm
 };
+
+// What keeps corners from being a light: too few, too many, equal ones, three in a line, not convex; nothing where they do.
+std::optional<std::string> WhyNoPolygon(const std::vector<glm::dvec2>& corners);
+
+// Makes the light a polygon of these corners (m, along its axes, from `center`), in either order; moves `center` to their centroid.
+void SetCorners(Light& light, std::vector<glm::dvec2> corners);
 
 struct Image {
   int width = 0;

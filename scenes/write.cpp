@@ -195,27 +195,55 @@ void WriteEmission(TableText& table, const Light& before, const Light& after, Un
   if (recolored) table.Set("color", Numbers(hue / std::max({hue.x, hue.y, hue.z})));
 }
 
-std::string SizeText(const Light& light) {
-  return light.shape == LightShape::kRectangle ? Numbers({2.0 * light.half_size.x, 2.0 * light.half_size.y}) : Number(light.half_size.x);
+// What says a shape's size, and how.
+struct SizeEntry {
+  std::string key, text;
+};
+
+SizeEntry SizeOf(const Light& light) {
+  switch (light.shape) {
+    case LightShape::kRectangle:
+      return {"size", Numbers({2.0 * light.half_size.x, 2.0 * light.half_size.y})};
+    case LightShape::kDisk:
+    case LightShape::kSphere:
+      return {"radius", Number(light.half_size.x)};
+    case LightShape::kEllipse:
+      return {"radii", Numbers({light.half_size.x, light.half_size.y})};
+    case LightShape::kPolygon:
+      break;
+  }
+  std::string text;
+  for (const glm::dvec2& corner : light.corners) text += (text.empty() ? "[" : ", ") + Numbers({corner.x, corner.y});
+  return {"corners", text + "]"};
+}
+
+bool SameSize(const Light& a, const Light& b) {
+  return Close(a.half_size.x, b.half_size.x) && Close(a.half_size.y, b.half_size.y) &&
+         std::ranges::equal(a.corners, b.corners, [](const glm::dvec2& p, const glm::dvec2& q) {
+           return glm::distance(p, q) <= 10.0 * kDigits * (glm::length(p) + glm::length(q));
+         });
 }
 
 void WriteLight(TableText& table, const Light& before, const Light& after, Units units) {
-  const bool was_rectangle = before.shape == LightShape::kRectangle, is_rectangle = after.shape == LightShape::kRectangle;
+  const SizeEntry was = SizeOf(before), is = SizeOf(after);
+  // A file's corners need not lie about their centroid, from which the light's do: place and corners are written together.
+  const bool polygon = after.shape == LightShape::kPolygon;
   if (before.shape != after.shape) table.Set("shape", Quoted(Name(after.shape)));
-  if (!Close(before.center, after.center)) table.Set("position", Numbers(after.center));
-  if (was_rectangle != is_rectangle) {
-    table.Rename(was_rectangle ? "size" : "radius", is_rectangle ? "size" : "radius", SizeText(after));
-  } else if (!Close(before.half_size.x, after.half_size.x) || !Close(before.half_size.y, after.half_size.y)) {
-    table.Set(is_rectangle ? "size" : "radius", SizeText(after));
+  const bool reoriented = !Close(before.normal, after.normal) || !Close(before.axis_x, after.axis_x);
+  const bool placed = !Close(before.center, after.center) ||
+                      (before.shape == LightShape::kPolygon && (!polygon || reoriented || !SameSize(before, after)));
+  if (placed) table.Set("position", Numbers(after.center));
+  if (was.key != is.key) {
+    table.Rename(was.key, is.key, is.text);
+  } else if (!SameSize(before, after) || (polygon && placed)) {
+    table.Set(is.key, is.text);
   }
-  const bool flat = after.shape != LightShape::kSphere;
-  if (!flat && before.shape != LightShape::kSphere) {
+  const bool flat = IsFlat(after.shape);
+  if (!flat && IsFlat(before.shape)) {
     for (const char* key : {"target", "normal", "rotation", "up", "two_sided"}) table.Remove(key);
   }
   // A light that is moved keeps its axes, so what it faced as a target is a direction from then on.
-  const bool turned = !Close(before.normal, after.normal) || !Close(before.axis_x, after.axis_x) ||
-                      before.shape == LightShape::kSphere ||
-                      (table.Find("target") != nullptr && !Close(before.center, after.center));
+  const bool turned = reoriented || !IsFlat(before.shape) || (table.Find("target") != nullptr && placed);
   if (flat && turned) WriteAxes(table, after);
   if (flat && before.two_sided != after.two_sided) table.Set("two_sided", after.two_sided ? "true" : "false");
   WriteEmission(table, before, after, units);
@@ -224,12 +252,13 @@ void WriteLight(TableText& table, const Light& before, const Light& after, Units
 std::string NewLight(const Light& light, Units units) {
   std::string text = fmt::format("\n[[light]]\nname = {}\nshape = {}\nposition = {}\n", Quoted(light.name),
                                  Quoted(Name(light.shape)), Numbers(light.center));
-  if (light.shape != LightShape::kSphere) {
+  if (IsFlat(light.shape)) {
     text += fmt::format("normal = {}\n", Numbers(light.normal));
     if (!Close(AxisX(light.normal, std::nullopt), light.axis_x)) text += fmt::format("up = {}\n", Numbers(light.axis_y));
     if (light.two_sided) text += "two_sided = true\n";
   }
-  text += fmt::format("{} = {}\n", light.shape == LightShape::kRectangle ? "size" : "radius", SizeText(light));
+  const SizeEntry size = SizeOf(light);
+  text += fmt::format("{} = {}\n", size.key, size.text);
   const glm::dvec3 hue = Hue(light);
   if (!CloseColor(hue, glm::dvec3(1.0))) text += fmt::format("color = {}\n", Numbers(hue / std::max({hue.x, hue.y, hue.z})));
   return text + fmt::format("{} = {}\n", units == Units::kPhotometric ? "luminance" : "radiance", Number(Luminance(light.radiance)));
@@ -275,9 +304,8 @@ const Thing* Named(const std::vector<Thing>& things, const std::string& name) {
 }
 
 bool SameLight(const Light& a, const Light& b) {
-  const bool flat = a.shape != LightShape::kSphere;
-  return a.name == b.name && a.shape == b.shape && Close(a.center, b.center) && Close(a.half_size.x, b.half_size.x) &&
-         Close(a.half_size.y, b.half_size.y) && glm::distance(a.radiance, b.radiance) <= 10.0 * kDigits * glm::length(b.radiance) &&
+  const bool flat = IsFlat(a.shape);
+  return a.name == b.name && a.shape == b.shape && Close(a.center, b.center) && SameSize(a, b) && glm::distance(a.radiance, b.radiance) <= 10.0 * kDigits * glm::length(b.radiance) &&
          (!flat || (a.two_sided == b.two_sided && Close(a.normal, b.normal) && Close(a.axis_x, b.axis_x)));
 }
 

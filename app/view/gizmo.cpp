@@ -49,10 +49,13 @@ std::array<glm::dvec3, 3> Axes(const Light& light, GizmoMode mode) {
   return {light.axis_x, light.axis_y, light.normal};
 }
 
+// Whether it is scaled along each of its axes by itself.
+bool HasTwoSizes(LightShape shape) { return IsFlat(shape) && shape != LightShape::kDisk; }
+
 bool Exists(const Light& light, GizmoMode mode, int handle) {
-  if (light.shape == LightShape::kSphere) return mode == GizmoMode::kMove || (mode == GizmoMode::kScale && handle == kCenter);
+  if (!IsFlat(light.shape)) return mode == GizmoMode::kMove || (mode == GizmoMode::kScale && handle == kCenter);
   if (mode == GizmoMode::kTurn) return handle != kCenter;
-  if (mode == GizmoMode::kScale) return handle == kCenter || (handle < 2 && light.shape == LightShape::kRectangle);
+  if (mode == GizmoMode::kScale) return handle == kCenter || (handle < 2 && HasTwoSizes(light.shape));
   return true;
 }
 
@@ -72,7 +75,14 @@ std::vector<glm::dvec3> Outline(const Light& light, const Projection& view) {
       const glm::dvec3 c = light.center;
       return {c - x - y, c + x - y, c + x + y, c - x + y, c - x - y};
     }
+    case LightShape::kPolygon: {
+      std::vector<glm::dvec3> points;
+      for (const glm::dvec2& corner : light.corners) points.push_back(light.center + corner.x * light.axis_x + corner.y * light.axis_y);
+      points.push_back(points.front());
+      return points;
+    }
     case LightShape::kDisk:
+    case LightShape::kEllipse:
       return Circle(light.center, x, y);
     case LightShape::kSphere: {  // where lines of sight touch it
       const glm::dvec3 to = light.center - view.position;
@@ -190,9 +200,13 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
     } else if (before_center) {
       const double ratio = glm::distance(mouse, *before_center) / std::max(glm::distance(grabbed_, *before_center), 4.0 * line);
       for (int i = 0; i < 2; ++i) {
-        const bool whole = handle_ == kCenter || before_.shape != LightShape::kRectangle;
+        const bool whole = handle_ == kCenter || !HasTwoSizes(before_.shape);
         const double grown = handle_ == kCenter ? std::exp2((mouse.x - grabbed_.x) / reach) : ratio;
-        if (whole || handle_ == i) light.half_size[i] = std::clamp(before_.half_size[i] * grown, 5e-4, 1e5);
+        if (!whole && handle_ != i) continue;
+        light.half_size[i] = std::clamp(before_.half_size[i] * grown, 5e-4, 1e5);
+        for (std::size_t k = 0; k < light.corners.size(); ++k) {
+          light.corners[k][i] = before_.corners[k][i] * (light.half_size[i] / before_.half_size[i]);
+        }
       }
     }
   }

@@ -161,21 +161,39 @@ void Aim(Light& light, const glm::dvec3& normal) {
   light.axis_y = glm::cross(light.normal, light.axis_x);
 }
 
+// Another shape of about the same size.
+void Reshape(Light& light, LightShape shape) {
+  light.shape = shape;
+  light.corners.clear();
+  if (shape == LightShape::kDisk || shape == LightShape::kSphere) {
+    light.half_size = glm::dvec2(std::sqrt(light.half_size.x * light.half_size.y));
+  }
+  if (!IsFlat(shape)) light.two_sided = false;
+  if (shape == LightShape::kPolygon) {  // a hexagon
+    std::vector<glm::dvec2> corners;
+    for (int i = 0; i < 6; ++i) {
+      const double angle = i * glm::pi<double>() / 3.0;
+      corners.push_back(light.half_size * glm::dvec2(std::cos(angle), std::sin(angle)));
+    }
+    SetCorners(light, corners);
+  }
+}
+
 void LightControls(Session& session) {
   Light& light = session.scene.lights[static_cast<std::size_t>(session.light)];
-  const char* const shapes[] = {"rectangle", "disk", "sphere"};
-  int shape = static_cast<int>(light.shape);
+  const LightShape was = light.shape;
   Row("Shape", "", "");
-  if (ImGui::Combo("##shape", &shape, shapes, 3)) {
-    light.shape = static_cast<LightShape>(shape);
-    if (light.shape != LightShape::kRectangle) light.half_size = glm::dvec2(std::sqrt(light.half_size.x * light.half_size.y));
-    if (light.shape == LightShape::kSphere) light.two_sided = false;
+  if (ImGui::BeginCombo("##shape", Name(was))) {
+    for (const LightShape shape : kLightShapes) {
+      if (ImGui::Selectable(Name(shape), shape == was) && shape != was) Reshape(light, shape);
+    }
+    ImGui::EndCombo();
   }
   Tip("The light's shape. Its radiance stays when this changes.");
   Row("Position", "m", "");
   Vector("##position", light.center, 0.01f);
   Tip("Centre, metres: x right, y away, z up. Double-click to type.");
-  if (light.shape != LightShape::kSphere) {
+  if (IsFlat(light.shape)) {
     glm::dvec3 normal = light.normal;
     Row("Facing", "", "");
     if (Vector("##normal", normal, 0.01f) && glm::length(normal) > 1e-9) Aim(light, normal);
@@ -189,6 +207,24 @@ void LightControls(Session& session) {
       light.half_size = glm::clamp(0.5 * size, 0.5 * low, 0.5 * high);
     }
     Tip("Width and height, metres.");
+  } else if (light.shape == LightShape::kEllipse) {
+    const double low = 1e-3, high = 1e5;
+    Row("Half axes", "m", "");
+    if (ImGui::DragScalarN("##radii", ImGuiDataType_Double, &light.half_size.x, 2, 0.005f, &low, &high, "%.4g")) {
+      light.half_size = glm::clamp(light.half_size, low, high);
+    }
+    Tip("Metres, along the light's own two axes.");
+  } else if (light.shape == LightShape::kPolygon) {
+    glm::dvec2 reach = light.half_size;
+    const double low = 1e-3, high = 1e5;
+    Row("Reach", "m", "");
+    if (ImGui::DragScalarN("##reach", ImGuiDataType_Double, &reach.x, 2, 0.005f, &low, &high, "%.4g")) {
+      const glm::dvec2 scale = glm::clamp(reach, low, high) / light.half_size;
+      for (glm::dvec2& corner : light.corners) corner *= scale;
+      light.half_size *= scale;
+    }
+    Tip(fmt::format("How far the {} corners reach from their centroid along the light's own two axes, metres. The file says where each lies.",
+                    light.corners.size()));
   } else {
     Row("Radius", "m", "");
     if (Scalar("##radius", light.half_size.x, 0.005f, 1e-3, 1e5)) light.half_size.y = light.half_size.x;
@@ -216,7 +252,7 @@ void LightControls(Session& session) {
   float kelvin = NearestKelvin(light.radiance);
   if (ImGui::SliderFloat("##kelvin", &kelvin, 1700.0f, 12000.0f, "%.0f K")) recolor(PlanckianColor(kelvin));
   Tip("Colour temperature of a black body, kelvin, that comes nearest to the colour: 2700 a bulb, 6500 daylight. Turning it sets the colour.");
-  if (light.shape != LightShape::kSphere) {
+  if (IsFlat(light.shape)) {
     Row("Two-sided", "", "");
     ImGui::Checkbox("##two_sided", &light.two_sided);
     Tip("Lights both sides.");

@@ -2,7 +2,7 @@
 summary = "Linearly transformed cosines, horizon by the vector form factor's proxy sphere"
 citation = "Hill & Heitz 2016; Heitz & Hill 2017; Snyder 1996; Heitz et al. 2016"
 author_note = "Published: clipped sphere from a table, rational edge, disks by a cubic, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, disks and spheres by their cone, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
-shapes = ["rectangle", "disk", "sphere"]
+shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel"]
@@ -116,6 +116,9 @@ norm = "none"
 #include "clipped_proxy.glsl"
 #include "disk"
 #include "ltc_shading.glsl"
+#if EFFECT_POLYGON
+#include "polygon_light.glsl"
+#endif
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
@@ -123,6 +126,16 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   float form_factor;
   vec3 transformed;
+#if EFFECT_POLYGON
+  if (light.shape == SHAPE_POLYGON) {
+    PolygonView view = ViewPolygon(light, surface.position, frame);
+    vec3 f = PolygonVector(light, view, true);
+    form_factor = LambertProxy(MakeVectorFormFactor(f, f.z));
+    vec3 lobe = PolygonVector(light, TransformPolygon(cell.m, view), false);
+    transformed = vec3(lobe.x, lobe.y, ClippedProxy(MakeVectorFormFactor(lobe, lobe.z)));
+  } else
+#endif
+  {
 #if EFFECT_RECTANGLE
 #if EFFECT_DISK || EFFECT_SPHERE
   if (light.shape == SHAPE_RECTANGLE)
@@ -140,5 +153,6 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if EFFECT_DISK || EFFECT_SPHERE
   RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
 #endif
+  }
   return LtcRadiance(surface, light, frame, cell, form_factor, transformed);
 }

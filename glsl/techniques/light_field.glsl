@@ -2,11 +2,11 @@
 summary = "Arvo's light-field vector of the polygon: its cosine for the diffuse lobe, its direction put into the BRDF for the specular"
 citation = "Light field 2013; Arvo 1994; Lambert 1760"
 author_note = "Published: the vector normalised, which the text says is what its listing does: form factor and fall-off are lost, a light is as bright from afar as from near; the language's arc cosine, Sutherland-Hodgman clipping. Default: Arvo's vector irradiance as it stands, exact for Lambert. In both, the test for lights wholly above or below comes first, and the specular is the BRDF towards the vector times its irradiance: a highlight of a point, brighter without bound as roughness falls, never the light's own outline. The listing's slips (two names for one polygon, a fixed count of corners, the same test twice) are corrected"
-shapes = ["rectangle"]
+shapes = ["rectangle", "polygon"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
-exact = ["lambert_rectangle", "point_limit"]
+exact = ["lambert_rectangle", "lambert_polygon", "point_limit"]
 
 [[option]]
 name = "vector"
@@ -50,30 +50,59 @@ edge = "acos"
 #include "vector_form_factor.glsl"
 #include "lit.glsl"
 #include "path.glsl"
+#if EFFECT_POLYGON
+#include "polygon_light.glsl"
+#endif
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   Radiance result;
   result.diffuse = vec3(0.0);
   result.specular = vec3(0.0);
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
-  RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
-
-  // The early test: how far the centre is above the horizon, against how far the corners reach.
-  float reach = abs(view.half_a.z) + abs(view.half_b.z);
-  if (WhollyBelow(view.center.z <= -reach)) return result;
   vec3 field;  // vector irradiance over π·radiance, world
-#if EFFECT_HORIZON
-  if (WhollyAbove(view.center.z > reach))
-#endif
-  {
-    vec3 f = LambertVector(view).f;
-    field = light.axis_x * f.x + light.axis_y * f.y + light.normal * f.z;
-  }
-#if EFFECT_HORIZON
-  else {
-    vec3 f = ClippedVector(view.center, view.half_a, view.half_b);
+#if EFFECT_POLYGON
+  if (light.shape == SHAPE_POLYGON) {
+    PolygonView view = ViewPolygon(light, surface.position, frame);
+    float highest = -1e30;
+    float lowest = 1e30;
+    for (int i = 0; i < light.corner_count; ++i) {
+      float height = PolygonCorner(light, view, i).z;
+      highest = max(highest, height);
+      lowest = min(lowest, height);
+    }
+    if (WhollyBelow(highest <= 0.0)) return result;
+    vec3 f;
+    if (WhollyAbove(lowest > 0.0)) {
+      f = PolygonVector(light, view, true);
+    } else {
+      f = ClippedPolygon(light, view, true);
+    }
     field = frame.tangent * f.x + frame.bitangent * f.y + frame.normal * f.z;
+  } else
+#endif
+#if EFFECT_RECTANGLE
+  {
+    RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
+
+    // The early test: how far the centre is above the horizon, against how far the corners reach.
+    float reach = abs(view.half_a.z) + abs(view.half_b.z);
+    if (WhollyBelow(view.center.z <= -reach)) return result;
+#if EFFECT_HORIZON
+    if (WhollyAbove(view.center.z > reach))
+#endif
+    {
+      vec3 f = LambertVector(view).f;
+      field = light.axis_x * f.x + light.axis_y * f.y + light.normal * f.z;
+    }
+#if EFFECT_HORIZON
+    else {
+      vec3 f = ClippedVector(view.center, view.half_a, view.half_b);
+      field = frame.tangent * f.x + frame.bitangent * f.y + frame.normal * f.z;
+    }
+#endif
   }
+#else
+    return result;  // of nothing else
 #endif
 
   float size2 = dot(field, field);

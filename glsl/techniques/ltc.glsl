@@ -2,15 +2,15 @@
 summary = "Linearly transformed cosines, clipped exactly at the horizon"
 citation = "Heitz et al. 2016; Hill & Heitz 2016; Heitz & Hill 2017; Lambert 1760"
 author_note = "Published: 16-case clip, rational edge, disks by a cubic and a proxy sphere (no exact clip was), tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: branchless clip in the light's plane, disks and spheres by their cone and exactly clipped, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
-shapes = ["rectangle", "disk", "sphere"]
+shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel"]
-exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "point_limit"]
+exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_polygon", "lambert_ellipse", "point_limit"]
 
 [[option]]
 name = "clip"
-summary = "Clipping of rectangles at the horizon"
+summary = "Clipping of rectangles at the horizon; polygons are streamed, or not clipped"
 choices = [
   ["arc", "branchless in the light's plane, the closing side as an arc"],
   ["switch", "one case for each set of corners above the horizon"],
@@ -124,6 +124,9 @@ norm = "none"
 #include "horizon"
 #include "disk"
 #include "ltc_shading.glsl"
+#if EFFECT_POLYGON
+#include "polygon_light.glsl"
+#endif
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
@@ -131,6 +134,22 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   float form_factor;
   vec3 transformed;
+#if EFFECT_POLYGON
+  if (light.shape == SHAPE_POLYGON) {
+    PolygonView view = ViewPolygon(light, surface.position, frame);
+#if CLIP_NONE || !EFFECT_HORIZON
+    form_factor = UnclippedPolygon(light, view, true).z;
+#else
+    form_factor = ClippedPolygon(light, view, true).z;
+#endif
+#if CLIP_NONE
+    transformed = UnclippedPolygon(light, TransformPolygon(cell.m, view), false);
+#else
+    transformed = ClippedPolygon(light, TransformPolygon(cell.m, view), false);
+#endif
+  } else
+#endif
+  {
 #if EFFECT_RECTANGLE
 #if EFFECT_DISK || EFFECT_SPHERE
   if (light.shape == SHAPE_RECTANGLE)
@@ -147,5 +166,6 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if EFFECT_DISK || EFFECT_SPHERE
   RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
 #endif
+  }
   return LtcRadiance(surface, light, frame, cell, form_factor, transformed);
 }

@@ -1,8 +1,8 @@
 /*---
 summary = "Samples of the light's solid angle and of the lobe, combined: unbiased, noisy"
 citation = "Veach & Guibas 1995; Heitz 2018; Ureña et al. 2013; Burley 2020"
-author_note = "Nobody's published form: what a user would otherwise do. Half of the samples on the light (rectangle: even in solid angle, by area below 0.01 sr; disk: by area; sphere: even over its cone), half along the mirrored visible normals of GGX (of the same alpha whatever the scene's BRDF: unbiased still), weighed by the balance heuristic; a lone sample is of either kind by chance. Owen-scrambled Sobol points, another scrambling for every pixel, light and seed, none for the time"
-shapes = ["rectangle", "disk", "sphere"]
+author_note = "Nobody's published form: what a user would otherwise do. Half of the samples on the light (rectangle: even in solid angle, by area below 0.01 sr; disk, ellipse and polygon: by area; sphere: even over its cone), half along the mirrored visible normals of GGX (of the same alpha whatever the scene's BRDF: unbiased still), weighed by the balance heuristic; a lone sample is of either kind by chance. Owen-scrambled Sobol points, another scrambling for every pixel, light and seed, none for the time"
+shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 yardstick = true
@@ -40,6 +40,39 @@ const int kSamples = 4;
 const int kSamples = 16;
 #else
 const int kSamples = 64;
+#endif
+
+#if EFFECT_POLYGON
+// m, even over the polygon, from its centre: a triangle about corner 0 by its share of the area, then a point in it.
+vec2 SamplePolygon(Light light, vec2 u) {
+  vec2 first = LightCorner(light, 0);
+  vec2 side = LightCorner(light, 1) - first;
+  vec2 next = LightCorner(light, 2) - first;
+  float target = u.x * light.area;
+  float before = 0.0;
+  float area = 0.5 * (side.x * next.y - side.y * next.x);
+  for (int i = 3; i < light.corner_count; ++i) {
+    if (target < before + area) break;
+    before += area;
+    side = next;
+    next = LightCorner(light, i) - first;
+    area = 0.5 * (side.x * next.y - side.y * next.x);
+  }
+  float r = sqrt(clamp((target - before) / max(area, 1e-30), 0.0, 1.0));
+  return first + mix(side, next, u.y) * r;
+}
+
+// place: m, from the centre.
+bool InPolygon(Light light, vec2 place) {
+  vec2 from = LightCorner(light, light.corner_count - 1);
+  bool inside = true;
+  for (int i = 0; i < light.corner_count; ++i) {
+    vec2 to = LightCorner(light, i);
+    inside = inside && (to.x - from.x) * (place.y - from.y) >= (to.y - from.y) * (place.x - from.x);
+    from = to;
+  }
+  return inside;
+}
 #endif
 
 // Lights shaded so far in this pixel: each has points of its own.
@@ -89,7 +122,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
       if (of_light || VersineBetween(to_light, cap.axis) <= cap.versine) light_density = 1.0 / (2.0 * kPi * max(cap.versine, 1e-30));
     }
 #endif
-#if EFFECT_RECTANGLE || EFFECT_DISK
+#if EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON
     if (light.shape != SHAPE_SPHERE) {
       float height = max(point.z, 1e-5 * (light.half_size.x + light.half_size.y));
       vec3 on_light = vec3(0.0, 0.0, -height);  // m, from the point, in the light's frame
@@ -98,7 +131,14 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
         if (light.shape == SHAPE_RECTANGLE) on_light = SampleSphericalRectangle(rectangle, u);
 #endif
 #if EFFECT_DISK
+#if EFFECT_ELLIPSE
+        if (light.shape == SHAPE_DISK) on_light = vec3(SampleDisk(1.0, u) * light.half_size - vec2(point.x, point.y), -height);
+#else
         if (light.shape == SHAPE_DISK) on_light = vec3(SampleDisk(light.half_size.x, u) - vec2(point.x, point.y), -height);
+#endif
+#endif
+#if EFFECT_POLYGON
+        if (light.shape == SHAPE_POLYGON) on_light = vec3(SamplePolygon(light, u) - vec2(point.x, point.y), -height);
 #endif
         to_light = (light.axis_x * on_light.x + light.axis_y * on_light.y + light.normal * on_light.z) * inversesqrt(dot(on_light, on_light));
       } else {
@@ -112,8 +152,17 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
         light_density = SphericalRectangleDensity(rectangle, on_light);
       }
 #endif
+#if EFFECT_POLYGON
+      if (light.shape == SHAPE_POLYGON && faced && (of_light || InPolygon(light, place))) light_density = AreaDensity(on_light, light.area);
+#endif
 #if EFFECT_DISK
-      if (light.shape == SHAPE_DISK && faced && (of_light || dot(place, place) <= light.half_size.x * light.half_size.x)) {
+#if EFFECT_ELLIPSE
+      vec2 share = place / light.half_size;
+      bool in_disk = dot(share, share) <= 1.0;
+#else
+      bool in_disk = dot(place, place) <= light.half_size.x * light.half_size.x;
+#endif
+      if (light.shape == SHAPE_DISK && faced && (of_light || in_disk)) {
         light_density = AreaDensity(on_light, light.area);
       }
 #endif

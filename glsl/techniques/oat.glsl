@@ -2,7 +2,7 @@
 summary = "The light's spherical cap intersected with the cap of open sky, the hemisphere where nothing is baked"
 citation = "Oat 2006"
 author_note = "overlap=smoothstep, centroid=average are Oat's, for diffuse light from spheres; the exact overlap is the form of Tovchigrechko & Vakser 2001 that he shows and replaces, with a sign of its print corrected; ours: the overlap's centroid, rectangle and disk as the cap of equal solid angle about the direction to their centre, and the specular lobe as a GGX cone intersected with the light's cap, as bright in total as the lobe"
-shapes = ["rectangle", "disk", "sphere"]
+shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
 effects = ["two_sided", "fresnel", "many_lights", "aperture"]

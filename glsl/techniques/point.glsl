@@ -2,7 +2,7 @@
 summary = "A point at the light's centre with the light's intensity towards the surface: the baseline"
 citation = "far-field limit of an area light; intensity and its cosine as in Drobot 2014, eq. 1.16"
 author_note = "published and default form are the same: there is one"
-shapes = ["rectangle", "disk", "sphere"]
+shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]

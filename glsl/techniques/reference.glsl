@@ -2,11 +2,11 @@
 summary = "The truth's own integrals in the shader: closed form factors, Gauss rays in the slope plane; no noise"
 citation = "Lambert 1760; Walter et al. 2007; Heitz 2014"
 author_note = "Ours: the rule of the ground truth at a fixed number of nodes"
-shapes = ["rectangle", "disk", "sphere"]
+shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
-exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle", "ggx_disk", "ggx_sphere", "point_limit"]
+exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_polygon", "lambert_ellipse", "ggx_rectangle", "ggx_disk", "ggx_sphere", "ggx_polygon", "ggx_ellipse", "point_limit"]
 
 [[option]]
 name = "level"
@@ -255,6 +255,13 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   outline.arc_count = 0;
   outline.form_factor = 0.0;
   outline.mirror_inside = true;
+#if EFFECT_POLYGON
+  if (light.shape == SHAPE_POLYGON) {
+    vec3 along_x = vec3(dot(x_axis, light.axis_x), dot(y_axis, light.axis_x), dot(surface.normal, light.axis_x));
+    vec3 along_y = vec3(dot(x_axis, light.axis_y), dot(y_axis, light.axis_y), dot(surface.normal, light.axis_y));
+    PolygonOutline(light, center, along_x, along_y, mirror, outline);
+  } else
+#endif
   if (light.shape == SHAPE_RECTANGLE) {
 #if EFFECT_RECTANGLE
     vec3 half_a = vec3(dot(x_axis, light.half_axis_x), dot(y_axis, light.half_axis_x), dot(surface.normal, light.half_axis_x));
@@ -265,7 +272,13 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if EFFECT_DISK
     vec3 normal = vec3(dot(x_axis, light.normal), dot(y_axis, light.normal), dot(surface.normal, light.normal));
     if (dot(normal, center) < 0.0) {
+#if EFFECT_ELLIPSE
+      vec3 half_a = vec3(dot(x_axis, light.half_axis_x), dot(y_axis, light.half_axis_x), dot(surface.normal, light.half_axis_x));
+      vec3 half_b = vec3(dot(x_axis, light.half_axis_y), dot(y_axis, light.half_axis_y), dot(surface.normal, light.half_axis_y));
+      ConeOutline(EllipseCone(center, half_a, half_b, normal), mirror, outline);
+#else
       ConeOutline(DiskCone(center, normal, light.half_size.x), mirror, outline);
+#endif
     }
 #endif
   } else {

@@ -45,7 +45,7 @@ inline PointCase RandomPoint(PointRandom& random, LightShape shape) {
   c.axis_x = glm::normalize(glm::cross(random.Direction(), c.light_normal));
   c.axis_y = glm::cross(c.light_normal, c.axis_x);
   c.half_size = {random(0.2, 1.0), random(0.2, 1.0)};
-  if (shape != LightShape::kRectangle) c.half_size.y = c.half_size.x;
+  if (shape == LightShape::kDisk || shape == LightShape::kSphere) c.half_size.y = c.half_size.x;
   if (shape == LightShape::kSphere) c.half_size *= 0.9;  // the point stays outside
   return c.Rounded();
 }

@@ -212,13 +212,15 @@ Brute OverPatches(const ShadingPoint& p, const dvec3& m, const std::vector<Patch
 
 // A flat convex polygon cut at the horizon, in triangles from corner 0, each as a square collapsed at that
 // corner.
-Brute BruteRectangle(const ShadingPoint& p, const Light& light, double tolerance) {
+Brute BrutePolygon(const ShadingPoint& p, const Light& light, double tolerance) {
   dvec3 a = light.axis_x * light.half_size.x, b = light.axis_y * light.half_size.y;
-  std::vector<dvec3> corners = {light.center + a + b, light.center - a + b, light.center - a - b,
-                                light.center + a - b},
-                     cut;
-  for (std::size_t i = 0; i < 4; ++i) {
-    dvec3 u = corners[i], v = corners[(i + 1) % 4];
+  std::vector<dvec3> corners, cut;
+  for (const glm::dvec2& c : light.corners) corners.push_back(light.center + light.axis_x * c.x + light.axis_y * c.y);
+  if (light.shape == LightShape::kRectangle) {
+    corners = {light.center + a + b, light.center - a + b, light.center - a - b, light.center + a - b};
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    dvec3 u = corners[i], v = corners[(i + 1) % corners.size()];
     double hu = glm::dot(u - p.position, p.normal), hv = glm::dot(v - p.position, p.normal);
     if (hu >= 0.0) cut.push_back(u);
     if (hu * hv < 0.0) cut.push_back(u + (v - u) * (hu / (hu - hv)));
@@ -252,45 +254,46 @@ Brute BruteRectangle(const ShadingPoint& p, const Light& light, double tolerance
   return OverPatches(p, light.normal, patches, split, tolerance);
 }
 
-// A disk in the plane with normal m, cut at the horizon: strips parallel to the horizon's line, x = R cos t.
-Brute BruteDisk(const ShadingPoint& p, const dvec3& center, const dvec3& m, double radius, double tolerance) {
-  dvec3 up = p.normal - m * glm::dot(m, p.normal);
-  double steep = glm::length(up);
-  dvec3 u = steep > 1e-12
-                ? up / steep
-                : glm::normalize(glm::cross(m, std::abs(m.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
-  dvec3 w = glm::cross(m, u);
+// An ellipse of perpendicular half axes a and b in the plane with normal m, cut at the horizon: of the unit disk that a and b
+// stretch, strips along which the height stays, x = cos t.
+Brute BruteEllipse(const ShadingPoint& p, const dvec3& center, const dvec3& m, const dvec3& a, const dvec3& b, double tolerance) {
+  glm::dvec2 rise(glm::dot(a, p.normal), glm::dot(b, p.normal));
+  double steep = glm::length(rise);
+  rise = steep > 1e-12 ? rise / steep : glm::dvec2(1.0, 0.0);
+  dvec3 u = a * rise.x + b * rise.y, w = b * rise.x - a * rise.y;
+  double area = glm::length(a) * glm::length(b);
   double height = glm::dot(center - p.position, p.normal);
-  if (height <= -radius * steep) return {0.0, 0.0, 0.0};
+  if (height <= -steep) return {0.0, 0.0, 0.0};
   // Height is height + x · steep ≥ 0: t from 0 (the top) to acos of the cut.
-  double t_end = height >= radius * steep ? kPi : std::acos(-height / (radius * steep));
+  double t_end = height >= steep ? kPi : std::acos(-height / steep);
   Patch patch{[=](double x, double y) {
     double t = t_end * x, s = std::sin(t);
-    return std::pair(center + u * (radius * std::cos(t)) + w * (radius * s * (2.0 * y - 1.0)),
-                     2.0 * radius * radius * s * s * t_end);
+    return std::pair(center + u * std::cos(t) + w * (s * (2.0 * y - 1.0)), 2.0 * area * s * s * t_end);
   }};
   dvec3 mirror = p.normal * (2.0 * glm::dot(p.normal, p.to_view)) - p.to_view;
   glm::dvec2 split(0.5, 0.5);
   double down = glm::dot(mirror, m);
   if (std::abs(down) > 1e-9 && glm::dot(center - p.position, m) / down > 0.0) {
     dvec3 hit = p.position + mirror * (glm::dot(center - p.position, m) / down) - center;
-    double c = glm::clamp(glm::dot(hit, u) / radius, -1.0, 1.0), s = std::sqrt(1.0 - c * c);
-    split = {std::acos(c) / t_end, s > 0.0 ? 0.5 + 0.5 * glm::dot(hit, w) / (radius * s) : 0.5};
+    glm::dvec2 place(glm::dot(hit, a) / glm::dot(a, a), glm::dot(hit, b) / glm::dot(b, b));
+    double c = glm::clamp(glm::dot(place, rise), -1.0, 1.0), s = std::sqrt(1.0 - c * c);
+    split = {std::acos(c) / t_end, s > 0.0 ? 0.5 + 0.5 * (place.y * rise.x - place.x * rise.y) / s : 0.5};
   }
   return OverPatches(p, m, {patch}, {split}, tolerance);
 }
 
 Brute BruteForce(const ShadingPoint& p, const Light& light, double tolerance) {
-  if (light.shape == LightShape::kRectangle) return BruteRectangle(p, light, tolerance);
-  if (light.shape == LightShape::kDisk) {
+  if (light.shape == LightShape::kRectangle || light.shape == LightShape::kPolygon) return BrutePolygon(p, light, tolerance);
+  if (light.shape != LightShape::kSphere) {
     if (glm::dot(p.position - light.center, light.normal) <= 0.0) return {0.0, 0.0, 0.0};
-    return BruteDisk(p, light.center, light.normal, light.half_size.x, tolerance);
+    return BruteEllipse(p, light.center, light.normal, light.axis_x * light.half_size.x, light.axis_y * light.half_size.y, tolerance);
   }
   // A sphere covers what the disk covers that its tangent cone cuts out of a plane across the axis.
   dvec3 d = light.center - p.position;
   double distance = glm::length(d), radius = light.half_size.x;
   double tangent = radius / std::sqrt(distance * distance - radius * radius);
-  return BruteDisk(p, p.position + d / distance, d / distance, tangent, tolerance);
+  const dvec3 axis = d / distance, side = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+  return BruteEllipse(p, p.position + axis, axis, side * tangent, glm::cross(axis, side) * tangent, tolerance);
 }
 
 struct Setting {
@@ -351,7 +354,16 @@ std::vector<std::pair<ShadingPoint, Light>> Configurations(const Setting& settin
       light.normal = facing;
       light.axis_x = glm::normalize(glm::cross(facing, dvec3(0.3, 0.5, -0.4)));
       light.axis_y = glm::cross(light.normal, light.axis_x);
-      if (setting.shape != LightShape::kRectangle) light.half_size.y = light.half_size.x;
+      if (setting.shape == LightShape::kDisk || setting.shape == LightShape::kSphere) light.half_size.y = light.half_size.x;
+      if (setting.shape == LightShape::kEllipse) light.half_size.x *= 0.2 + 0.3 * place;  // from 1:5 to 2:1
+      if (setting.shape == LightShape::kPolygon) {  // 3 to 8 corners
+        std::vector<glm::dvec2> corners;
+        for (int i = 0; i < 3 + place; ++i) {
+          const double angle = (i + 0.6 * uniform(engine)) * 2.0 * kPi / (3 + place);
+          corners.push_back(light.half_size * glm::dvec2(std::cos(angle), std::sin(angle)));
+        }
+        SetCorners(light, corners);
+      }
       all.emplace_back(p, light);
     }
   }
@@ -399,7 +411,7 @@ TEST(Independent, HardConfigurationsAreWithinTheTolerance) {
 
 std::vector<Setting> Settings() {
   std::vector<Setting> all;
-  for (LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
+  for (LightShape shape : kLightShapes) {
     for (double roughness : {0.1, 0.25, 0.5, 0.75}) all.push_back({shape, roughness});
   }
   for (const Brdf brdf : kBrdfs) {

@@ -26,6 +26,8 @@ EffectDefines AllOn(const Technique& technique) {
     if (name == "EFFECT_RECTANGLE") value = does(LightShape::kRectangle);
     if (name == "EFFECT_DISK") value = does(LightShape::kDisk);
     if (name == "EFFECT_SPHERE") value = does(LightShape::kSphere);
+    if (name == "EFFECT_POLYGON") value = does(LightShape::kPolygon);
+    if (name == "EFFECT_ELLIPSE") value = does(LightShape::kEllipse);
   }
   return effects;
 }

@@ -42,6 +42,9 @@ std::string Repeat(int count, const std::string& last) {
 
 const std::string kRectangle =
     "shape = \"rectangle\"\nposition = [0.0, 0.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
+const std::string kEllipse = "shape = \"ellipse\"\nposition = [0, 0, 1]\nnormal = [0, 0, -1]\n";
+const std::string kPolygon = "shape = \"polygon\"\nposition = [0, 0, 1]\nnormal = [0, 0, -1]\n";
+const std::string kCornersExpected = "[[x, y], …], the 3 to 8 corners of a convex outline in metres, no three in a line";
 const std::string kSized = kRectangle + "size = [1.0, 0.5]\n";
 
 std::vector<BadScene> BadScenes() {
@@ -277,6 +280,40 @@ std::vector<BadScene> BadScenes() {
       {"LightNegativeRadius",
        Light("shape = \"sphere\"\nposition = [0, 0, 1]\nradius = -2 #HERE\nradiance = 1\n"),
        "'radius' in [[light]] 'lamp' is -2; expected a positive length in metres, 1e-6 to 1e7"},
+      {"EllipseZeroRadius", Light(kEllipse + "radii = [1.0, 0.0] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp' has no area; expected a positive length in metres, 1e-6 to 1e7"},
+      {"EllipseOneRadius", Light(kEllipse + "radii = [1.0] #HERE\nradiance = 1\n"),
+       "'radii' in [[light]] 'lamp' has 1 elements; expected an array of 2 numbers"},
+      {"EllipseHasNoRadius", Light(kEllipse + "radius = 1.0 #HERE\nradiance = 1\n"),
+       "unknown key 'radius' in [[light]] 'lamp'; expected one of: name, shape, position, color, radiance, flux, luminance, luminous_flux, "
+       "radii, target, normal, rotation, up, two_sided"},
+      {"PolygonCornersMissing",
+       kCamera + kMaterial + kSurface + "[[light]] #HERE\n" + kPolygon + "radiance = 1\n",
+       "[[light]] has no 'corners'; expected " + kCornersExpected},
+      {"PolygonCornersNumber", Light(kPolygon + "corners = 3 #HERE\nradiance = 1\n"),
+       "'corners' in [[light]] 'lamp' is an integer; expected " + kCornersExpected},
+      {"PolygonTwoCorners", Light(kPolygon + "corners = [[0, 0], [1, 0]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': 2 corners enclose nothing; expected " + kCornersExpected},
+      {"PolygonNineCorners",
+       Light(kPolygon + "corners = [[0, 0], [1, 0], [2, 1], [3, 3], [3, 4], [2, 6], [1, 7], [0, 7], [-1, 3]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': 9 corners are too many; expected " + kCornersExpected},
+      {"PolygonEqualCorners", Light(kPolygon + "corners = [[0, 0], [1, 0], [1, 0], [0, 1]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': corners 2 and 3 are the same; expected " + kCornersExpected},
+      {"PolygonCollinear", Light(kPolygon + "corners = [[0, 0], [1, 0], [2, 0], [1, 1]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': corner 2 lies in a line with its neighbours; expected " + kCornersExpected},
+      {"PolygonZeroArea", Light(kPolygon + "corners = [[0, 0], [1, 1], [2, 2]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': corner 1 lies in a line with its neighbours; expected " + kCornersExpected},
+      {"PolygonTinyArea", Light(kPolygon + "corners = [[0, 0], [1e-7, 0], [0, 1e-7]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': it has no area; expected " + kCornersExpected},
+      {"PolygonNotConvex", Light(kPolygon + "corners = [[0, 0], [2, 0], [0.5, 0.5], [0, 2]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': the outline turns in at corner 3; expected " + kCornersExpected},
+      {"PolygonStar",
+       Light(kPolygon + "corners = [[0, 1], [0.6, -0.8], [-1, 0.3], [1, 0.3], [-0.6, -0.8]] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp': the outline crosses itself; expected " + kCornersExpected},
+      {"PolygonNan", Light(kPolygon + "corners = [[0, 0], [1, 0], [nan, 1]] #HERE\nradiance = 1\n"),
+       "'corners[2][0]' in [[light]] 'lamp' is nan, not a finite number; expected metres, at most 1e7 either way"},
+      {"PolygonFlatCorner", Light(kPolygon + "corners = [[0, 0], [1, 0], [0, 1, 2]] #HERE\nradiance = 1\n"),
+       "'corners[2]' in [[light]] 'lamp' has 3 elements; expected an array of 2 numbers"},
       {"SphereHasNoTarget",
        Light(
            "shape = \"sphere\"\nposition = [0, 0, 1]\nradius = 2\ntarget = [0, 0, 0] #HERE\nradiance = 1\n"),

@@ -30,6 +30,9 @@ void ExpectRightHanded(const Light& light) {
 const std::string kRectangle = "shape = \"rectangle\"\nposition = [1.0, 2.0, 3.0]\nsize = [4.0, 0.5]\n";
 const std::string kDisk = "shape = \"disk\"\nposition = [1.0, 2.0, 3.0]\nradius = 0.25\n";
 const std::string kSphere = "shape = \"sphere\"\nposition = [1.0, 2.0, 3.0]\nradius = 0.25\n";
+const std::string kEllipse = "shape = \"ellipse\"\nposition = [1.0, 2.0, 3.0]\nradii = [0.5, 0.25]\n";
+// A right triangle of 3 m² whose centroid is at (1, 2/3).
+const std::string kPolygon = "shape = \"polygon\"\nposition = [1.0, 2.0, 3.0]\ncorners = [[0.0, 0.0], [3.0, 0.0], [0.0, 2.0]]\n";
 const std::string kAimed = "target = [0.0, 0.0, 0.0]\n";
 
 TEST_F(LightTest, AreaAndFluxOfUnitRadianceAreTheClosedForms) {
@@ -39,13 +42,16 @@ TEST_F(LightTest, AreaAndFluxOfUnitRadianceAreTheClosedForms) {
   EXPECT_NEAR(Read(kRectangle + kAimed + unit + both).Flux(), kPi * 4.0, 1e-14);
   EXPECT_NEAR(Read(kDisk + kAimed + unit).Flux(), kPi * kPi * 0.0625, 1e-14);
   EXPECT_NEAR(Read(kDisk + kAimed + unit + both).Flux(), 2.0 * kPi * kPi * 0.0625, 1e-14);
+  EXPECT_NEAR(Read(kEllipse + kAimed + unit).Flux(), kPi * kPi * 0.125, 1e-14);
+  EXPECT_NEAR(Read(kPolygon + kAimed + unit).Flux(), kPi * 3.0, 1e-14);
+  EXPECT_NEAR(Read(kPolygon + kAimed + unit + both).Flux(), kPi * 6.0, 1e-14);
   EXPECT_NEAR(Read(kSphere + unit).Flux(), 4.0 * kPi * kPi * 0.0625, 1e-14);
   EXPECT_NEAR(Read(kSphere + unit).Area(), 4.0 * kPi * 0.0625, 1e-14);
 }
 
 TEST_F(LightTest, FluxComesBackThroughRadiance) {
   for (const std::string& shape : {kRectangle + kAimed, kRectangle + kAimed + "two_sided = true\n",
-                                   kDisk + kAimed, kDisk + kAimed + "two_sided = true\n", kSphere}) {
+                                   kDisk + kAimed, kDisk + kAimed + "two_sided = true\n", kSphere, kEllipse + kAimed, kPolygon + kAimed}) {
     for (const std::string color : {"", "color = [1.0, 0.5, 0.1]\n", "color = [0.0, 0.0, 7.0]\n"}) {
       EXPECT_NEAR(Read(shape + color + "flux = 123.0\n").Flux(), 123.0, 1e-11);
       EXPECT_NEAR(Read(shape + color + "luminous_flux = 800.0\n", "photometric").Flux(), 800.0, 1e-10);
@@ -96,6 +102,21 @@ TEST_F(LightTest, RotationTurnsALightThatFacesUp) {
   ExpectRightHanded(turned);
   EXPECT_LT(glm::length(turned.normal - glm::dvec3(0.5, -std::sqrt(0.75), 0.0)), 1e-15);
   ExpectRightHanded(Read(kRectangle + "rotation = [12345.6, -7.8, 91.2]\nradiance = 1.0\n"));
+}
+
+// The same light whichever way its corners run; its centre is the centroid, its corners counter-clockwise about it.
+TEST_F(LightTest, APolygonsCornersRunEitherWay) {
+  const std::string flat = "normal = [0.0, 0.0, 1.0]\nup = [0.0, 1.0, 0.0]\nradiance = 1.0\n";
+  const Light light = Read(kPolygon + flat);
+  ExpectRightHanded(light);
+  EXPECT_LT(glm::distance(light.center, glm::dvec3(2.0, 2.0 + 2.0 / 3.0, 3.0)), 1e-14);
+  EXPECT_LT(glm::distance(light.half_size, glm::dvec2(2.0, 4.0 / 3.0)), 1e-14);
+  ASSERT_EQ(light.corners.size(), 3u);
+  EXPECT_LT(glm::distance(light.corners[1], glm::dvec2(2.0, -2.0 / 3.0)), 1e-14);
+  EXPECT_LT(glm::distance(light.corners[2], glm::dvec2(-1.0, 4.0 / 3.0)), 1e-14);
+  const Light other = Read("shape = \"polygon\"\nposition = [1.0, 2.0, 3.0]\ncorners = [[0.0, 0.0], [0.0, 2.0], [3.0, 0.0]]\n" + flat);
+  EXPECT_EQ(other.corners, light.corners);
+  EXPECT_EQ(other.center, light.center);
 }
 
 TEST_F(LightTest, LightsWithoutNamesAreNumbered) {

@@ -145,6 +145,32 @@ TEST(SceneWriter, ShapesChange) {
   EXPECT_THAT(text, HasSubstr("size = [0.4, 0.2]"));
 }
 
+// A file's corners need not lie about their centroid; what is moved, turned or stretched reads back the same light.
+TEST(SceneWriter, PolygonsAndEllipsesComeBack) {
+  std::string text = kText;
+  text += "[[light]]\nname = \"kite\"\nshape = \"polygon\"\nposition = [0.5, 0.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n"
+          "corners = [[0.0, 0.0], [0.5, 0.1], [0.7, 0.8], [-0.1, 0.6]]\nradiance = 2.0\n";
+  const Scene before = Read(text);
+  EXPECT_EQ(EditedText(text, before, before), text);
+  for (int edit = 0; edit < 5; ++edit) {
+    Scene after = before;
+    Light& light = after.lights.back();
+    if (edit == 0) light.center.z += 0.5;
+    if (edit == 1) std::swap(light.axis_x, light.axis_y), light.normal = -light.normal;
+    if (edit == 2) {
+      for (glm::dvec2& corner : light.corners) corner.x *= 1.5;
+      light.half_size.x *= 1.5;
+    }
+    if (edit == 3) light.shape = LightShape::kEllipse, light.half_size = {0.4, 0.2}, light.corners.clear();
+    if (edit == 4) SetCorners(after.lights[0], {{-0.2, 0.0}, {0.2, -0.1}, {0.1, 0.3}});
+    const Scene read = ParseScene(before.file, Edited(before, after, text));
+    const std::vector<glm::dvec2>& a = read.lights.back().corners;
+    ASSERT_EQ(a.size(), light.corners.size()) << edit;
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT(glm::distance(a[i], light.corners[i]), 1e-5) << edit << " " << i;
+    EXPECT_EQ(read.lights[0].shape, after.lights[0].shape);
+  }
+}
+
 TEST(SceneWriter, LightsComeAndGo) {
   const Scene before = Read(kText);
   Scene after = before;
