@@ -212,6 +212,9 @@ void RunExport(const ExportArguments& arguments) {
     }
   }
   const EffectDefines defines = Defines(effects, variant.effects);
+  if (std::ranges::find(defines, std::pair<std::string, int>("EFFECT_TEXTURED", 1)) != defines.end()) {
+    throw InputError("export: textures of lights are not exported; expected a scene without them, or --effect textured=0");
+  }
   const int lights = std::ranges::find(defines, std::pair<std::string, int>("EFFECT_MANY_LIGHTS", 1)) == defines.end() ? 1 : kExportedLights;
 
   ExportFolder folder(arguments.out);

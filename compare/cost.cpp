@@ -321,7 +321,7 @@ void CostMeter::Store(const fs::path& file, const ShaderCost& cost) {
 }
 
 Scene SceneOfEffects(const std::vector<std::string>& effects) {
-  constexpr std::array kNames = {"rectangle", "disk", "sphere", "polygon", "ellipse", "two_sided", "diffuse", "specular", "fresnel", "many_lights"};
+  constexpr std::array kNames = {"rectangle", "disk", "sphere", "polygon", "ellipse", "two_sided", "diffuse", "specular", "fresnel", "textured", "many_lights"};
   for (const std::string& effect : effects) {
     if (std::find(kNames.begin(), kNames.end(), effect) == kNames.end()) {
       throw InputError(fmt::format("no effect \"{}\"; expected of {}", effect, fmt::join(kNames, ", ")));
@@ -340,6 +340,7 @@ Scene SceneOfEffects(const std::vector<std::string>& effects) {
     if (has("many_lights") && scene.lights.size() == 1) scene.lights.push_back(scene.lights[0]);
     scene.lights[0].two_sided = has("two_sided");
     scene.lights[0].radiance = {1.0, 0.9, 0.8};
+    if (has("textured")) scene.lights[0].texture = std::make_shared<Image>(Image{1, 1, {glm::vec4(1.0f)}});
   }
   Material material;
   material.metalness = has("diffuse") ? 0.0f : 1.0f;

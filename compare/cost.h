@@ -69,7 +69,7 @@ class CostMeter {
 };
 
 // A scene that calls for exactly these effects and for all that are not named here ("rectangle", "disk", "sphere", "two_sided", "diffuse", "specular",
-// "fresnel", "many_lights"). Throws InputError that lists them, or says that there is no such scene.
+// "fresnel", "textured", "many_lights"). Throws InputError that lists them, or says that there is no such scene.
 Scene SceneOfEffects(const std::vector<std::string>& effects);
 
 }  // namespace arealab

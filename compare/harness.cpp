@@ -14,6 +14,7 @@
 #include "compare/timing.h"
 #include "compare/truth_cache.h"
 #include "scenes/error.h"
+#include "scenes/light_texture.h"
 
 namespace arealab {
 namespace {
@@ -157,6 +158,10 @@ std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pi
     if (kind < static_cast<int>(PixelKind::kEmitter)) continue;
     const Light& light = scene.lights.at(static_cast<std::size_t>(kind - static_cast<int>(PixelKind::kEmitter)));
     emission[i] = glm::vec3(light.radiance);
+    if (!light.texture) continue;
+    const bool back = glm::dot(glm::dvec3(pixels.view_position) - light.center, light.normal) < 0.0;
+    const glm::dvec2 uv = TextureCoordinates(light, glm::dvec3(pixels.position[i]), back);
+    emission[i] = glm::vec3(light.radiance * TextureAt(*light.texture, uv));
   }
   return emission;
 }

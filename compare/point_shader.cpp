@@ -30,7 +30,7 @@ glm::dvec3 AsFloats(const glm::dvec3& v) {
 
 // Everything on but shapes that no case has, the other side of lights, the loop, and apertures.
 EffectDefines EffectsOf(std::span<const PointCase> cases) {
-  std::map<std::string, bool> forced = {{"two_sided", false}, {"many_lights", false}, {"aperture", false}};
+  std::map<std::string, bool> forced = {{"two_sided", false}, {"many_lights", false}, {"aperture", false}, {"textured", false}};
   for (const LightShape shape : kLightShapes) {
     forced[Name(shape)] = std::ranges::any_of(cases, [&](const PointCase& c) { return c.shape == shape; });
   }

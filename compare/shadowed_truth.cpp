@@ -9,8 +9,10 @@
 #include <optional>
 
 #include "compare/light_sampling.h"
+#include "compare/textured_truth.h"
 #include "compare/truth_bands.h"
 #include "compare/truth_cache.h"
+#include "scenes/light_texture.h"
 #include "scenes/ray_query.h"
 // clang-format off: the order matters
 #include "glsl/dual_begin.h"
@@ -29,6 +31,7 @@ constexpr double kLightShare = 0.05;  // of the tolerance: how well the lights a
 constexpr double kFarShare = 1.0 - 0x1p-17;  // rays end before the light: a wall may touch it
 
 enum Integral : std::size_t { kDiffuse, kSpecular, kGrazing, kIntegrals };
+constexpr std::size_t kSums = 3 * kIntegrals;  // one of each channel
 
 // The plane of the light, the four that join it to the point, and the horizon.
 Shaft ShaftTo(const ShadingPoint& point, const LightDirections& light) {
@@ -54,16 +57,20 @@ class SampledLight {
   // Radiance of the diffuse lobe, and of the specular one with F0 and with 1 − F0: all unshadowed.
   std::array<glm::dvec3, kIntegrals> unshadowed;
 
-  SampledLight(const ShadedPixel& pixel, const Light& light, const LightIntegrals& integrals,
+  SampledLight(const ShadedPixel& pixel, const Light& light, const ColorIntegrals& integrals,
                const LightDirections& directions, std::uint64_t seed)
       : unshadowed{pixel.albedo * light.radiance * integrals.form_factor,
                    pixel.specular_weight * pixel.f0 * light.radiance * integrals.specular,
                    pixel.specular_weight * (1.0 - pixel.f0) * light.radiance * integrals.specular_grazing},
         point_(&pixel.point),
+        light_(light.texture ? &light : nullptr),
+        channels_(light.texture ? 3 : 1),
         directions_(directions),
         seed_(seed) {
+    std::array<double, kIntegrals> sum;
     for (std::size_t k = 0; k < kIntegrals; ++k) {
-      shares_[k] = unshadowed[k].x + unshadowed[k].y + unshadowed[k].z;
+      sum[k] = unshadowed[k].x + unshadowed[k].y + unshadowed[k].z;
+      for (std::size_t c = 0; c < channels_; ++c) shares_[k * channels_ + c] = light_ ? unshadowed[k][static_cast<int>(c)] : sum[k];
     }
     const glm::dvec3 &n = point_->normal, &v = point_->to_view;
     z_ = n;
@@ -78,8 +85,8 @@ class SampledLight {
     // Where the light covers more than a quarter of the lobe's middle, 4πα² cosθ sr of the density's peak,
     // the lobe's own directions serve better; unless the highlight hardly counts here.
     const double lobe = 4.0 * std::numbers::pi * point_->alpha * point_->alpha * cos_v_;
-    const double specular = shares_[kSpecular] + shares_[kGrazing];
-    by_lobe_ = directions_.solid_angle() > 0.25 * lobe && specular > 0.02 * (specular + shares_[kDiffuse]);
+    const double specular = sum[kSpecular] + sum[kGrazing];
+    by_lobe_ = directions_.solid_angle() > 0.25 * lobe && specular > 0.02 * (specular + sum[kDiffuse]);
   }
 
   std::uint32_t count() const { return count_; }
@@ -105,7 +112,7 @@ class SampledLight {
     rays.Occluded(origin, scratch.rays, scratch.occluded);
     for (std::size_t i = 0; i < scratch.weighted.size(); ++i) {
       const Weighted& w = scratch.weighted[i];
-      for (std::size_t k = 0; k < kIntegrals; ++k) {
+      for (std::size_t k = 0; k < kIntegrals * channels_; ++k) {
         weight_[k][w.group] += w.weight[k];
         if (scratch.occluded[i] == 0) free_[k][w.group] += w.weight[k];
         square_[k] += w.weight[k] * w.weight[k];
@@ -114,16 +121,19 @@ class SampledLight {
     Estimate();
   }
 
-  // The share of an integral that arrives.
-  double Visible(Integral k) const { return visible_[k]; }
+  // The share of an integral that arrives, of each channel.
+  glm::dvec3 Visible(Integral k) const {
+    const auto of = [&](std::size_t c) { return visible_[k * channels_ + std::min(c, channels_ - 1)]; };
+    return {of(0), of(1), of(2)};
+  }
   bool AllVisible() const {
-    return std::all_of(visible_.begin(), visible_.end(), [](double v) { return v == 1.0; });
+    return std::all_of(visible_.begin(), visible_.begin() + kIntegrals * channels_, [](double v) { return v == 1.0; });
   }
 
  private:
   struct Weighted {
     std::size_t group;
-    std::array<double, kIntegrals> weight;
+    std::array<double, kSums> weight;
   };
   struct Scratch {
     std::vector<RayQuery::ShadowRay> rays;
@@ -141,13 +151,20 @@ class SampledLight {
     if (by_lobe_) density += density_h * dual::SmithG1(cos_v_, point_->alpha) / (4.0 * cos_v_);
     Weighted w;
     w.group = group;
-    w.weight[kDiffuse] = cos_l / density;
+    std::array<double, kIntegrals> weight;
+    weight[kDiffuse] = cos_l / density;
     const double cos_h = glm::dot(z_, half), tan2_h = std::max(1.0 / (cos_h * cos_h) - 1.0, 0.0);
-    w.weight[kSpecular] = density_h * cos_l / density *
+    weight[kSpecular] = density_h * cos_l / density *
                           dual::BrdfOverGgx(point_->brdf, cos_v_, cos_l, glm::dot(half, point_->to_view), tan2_h,
                                             point_->alpha);
-    w.weight[kGrazing] = w.weight[kSpecular] * dual::SchlickWeight(glm::dot(half, point_->to_view));
-    if (!std::isfinite(w.weight[kDiffuse]) || !std::isfinite(w.weight[kSpecular])) return;
+    weight[kGrazing] = weight[kSpecular] * dual::SchlickWeight(glm::dot(half, point_->to_view));
+    if (!std::isfinite(weight[kDiffuse]) || !std::isfinite(weight[kSpecular])) return;
+    glm::dvec3 texel(1.0);
+    if (light_) {
+      const bool back = glm::dot(sample.direction, light_->normal) > 0.0;
+      texel = TextureAt(*light_->texture, TextureCoordinates(*light_, point_->position + sample.distance * sample.direction, back));
+    }
+    for (std::size_t k = 0; k < kIntegrals * channels_; ++k) w.weight[k] = weight[k / channels_] * texel[static_cast<int>(k % channels_)];
     scratch.weighted.push_back(w);
     scratch.rays.push_back({glm::vec3(sample.direction), static_cast<float>(sample.distance * kFarShare)});
   }
@@ -155,14 +172,14 @@ class SampledLight {
   void Estimate() {
     std::array<double, kGroups> residual{};
     double unseen = 0.0;  // what a ray that fell between could change
-    for (std::size_t k = 0; k < kIntegrals; ++k) {
+    for (std::size_t k = 0; k < kIntegrals * channels_; ++k) {
       double weight = 0.0, free = 0.0;
       for (std::size_t r = 0; r < kGroups; ++r) {
         weight += weight_[k][r];
         free += free_[k][r];
       }
       if (weight == 0.0) {  // the lobe lies where no direction fell
-        visible_[k] = k == kDiffuse ? 1.0 : visible_[kDiffuse];
+        visible_[k] = k < channels_ ? 1.0 : visible_[k % channels_];
         unseen += shares_[k];
         continue;
       }
@@ -180,13 +197,15 @@ class SampledLight {
   }
 
   const ShadingPoint* point_;
+  const Light* light_;    // where it has a texture; then each channel has sums of its own
+  std::size_t channels_;
   LightDirections directions_;
   std::uint64_t seed_;
   glm::dvec3 x_, y_, z_, view_;  // the frame of the lobe, and the viewer in it
   double cos_v_ = 0.0;
   bool by_lobe_ = false;
-  std::array<double, kIntegrals> shares_{}, square_{}, visible_{};
-  std::array<std::array<double, kGroups>, kIntegrals> weight_{}, free_{};
+  std::array<double, kSums> shares_{}, square_{}, visible_{};
+  std::array<std::array<double, kGroups>, kSums> weight_{}, free_{};
   std::uint32_t count_ = 0;
   double variance_ = 0.0;
 };
@@ -197,6 +216,7 @@ double Sum(const glm::dvec3& v) {
 
 struct ShadowBands {
   const Scene& scene;
+  SceneLights integrator;
   const SurfacePixels& pixels;
   const RadianceImage& unshadowed;
   double light_tolerance, tolerance;
@@ -238,8 +258,8 @@ struct ShadowBands {
         others = true;
         continue;
       }
-      const LightIntegrals integrals = IntegrateLight(pixel->point, light, light_tolerance);
-      if (integrals.form_factor == 0.0 && integrals.specular == 0.0) continue;
+      const ColorIntegrals integrals = integrator.Integrate(pixel->point, l, light_tolerance);
+      if (integrals.form_factor == glm::dvec3(0.0) && integrals.specular == glm::dvec3(0.0)) continue;
       lights.emplace_back(*pixel, light, integrals, *directions, Mix(Mix(kSeed, i), l));
     }
     if (lights.empty()) return;
@@ -266,7 +286,7 @@ struct ShadowBands {
       return;
     glm::dvec3 diffuse_left(0.0), specular_left(0.0), diffuse_lost(0.0), specular_lost(0.0);
     for (const SampledLight& light : lights) {
-      const double d = light.Visible(kDiffuse), s = light.Visible(kSpecular), g = light.Visible(kGrazing);
+      const glm::dvec3 d = light.Visible(kDiffuse), s = light.Visible(kSpecular), g = light.Visible(kGrazing);
       const auto& whole = light.unshadowed;
       diffuse_left += d * whole[kDiffuse];
       diffuse_lost += (1.0 - d) * whole[kDiffuse];
@@ -299,6 +319,7 @@ ShadowedTruth Assemble(const SurfacePixels& pixels, TruthBand whole) {
 BandShader MakeShader(const Scene& scene, const SurfacePixels& pixels, const RadianceImage& unshadowed,
                       const TruthOptions& truth_options, const ShadowOptions& options) {
   return ShadowBands{scene,
+                     SceneLights(scene),
                      pixels,
                      unshadowed,
                      std::max(truth_options.tolerance, kLightShare * options.tolerance),

@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "compare/textured_truth.h"
 #include "compare/truth_bands.h"
 
 namespace arealab {
@@ -40,7 +41,7 @@ std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels
 
 namespace {
 
-TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_begin, int row_end,
+TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SurfacePixels& pixels, int row_begin, int row_end,
                     double tolerance) {
   TruthBand band;
   auto width = static_cast<std::size_t>(pixels.width);
@@ -54,8 +55,9 @@ TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_beg
     if (!pixel) continue;
     const glm::dvec3 &albedo = pixel->albedo, &f0 = pixel->f0;
     glm::dvec3 diffuse(0.0), specular(0.0), error(0.0);
-    for (const Light& light : scene.lights) {
-      LightIntegrals s = IntegrateLight(pixel->point, light, tolerance);
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+      const Light& light = scene.lights[l];
+      const ColorIntegrals s = lights.Integrate(pixel->point, l, tolerance);
       diffuse += albedo * light.radiance * s.form_factor;
       specular += pixel->specular_weight * light.radiance * (f0 * (s.specular - s.specular_grazing) + s.specular_grazing);
       error += light.radiance * (albedo * s.form_factor_error +
@@ -74,8 +76,8 @@ TruthBand ShadeBand(const Scene& scene, const SurfacePixels& pixels, int row_beg
 }  // namespace
 
 BandShader UnshadowedBands(const Scene& scene, const SurfacePixels& pixels, double tolerance) {
-  return [&scene, &pixels, tolerance](int row_begin, int row_end) {
-    return ShadeBand(scene, pixels, row_begin, row_end, tolerance);
+  return [&scene, lights = SceneLights(scene), &pixels, tolerance](int row_begin, int row_end) {
+    return ShadeBand(scene, lights, pixels, row_begin, row_end, tolerance);
   };
 }
 

@@ -139,6 +139,10 @@ void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels
       hash.Value(corner.y);
     }
     AddVector(hash, light.radiance);
+    if (!light.texture) continue;
+    hash.Value(light.texture->width);
+    hash.Value(light.texture->height);
+    hash.Bytes(light.texture->pixels.data(), light.texture->pixels.size() * sizeof(glm::vec4));
   }
   hash.Bytes(pixels.position.data(), pixels.position.size() * sizeof(glm::vec4));
   hash.Bytes(pixels.normal.data(), pixels.normal.size() * sizeof(glm::vec4));

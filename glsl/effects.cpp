@@ -221,8 +221,18 @@ class Analysis {
   Verdict LightColor() const {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       if (!IsGrey(lights_[i].radiance)) return {true, Called(lights_[i], i) + " is coloured"};
+      if (lights_[i].texture && !std::ranges::all_of(lights_[i].texture->pixels, [](const glm::vec4& p) { return p.r == p.g && p.g == p.b; })) {
+        return {true, Called(lights_[i], i) + " has a coloured texture"};
+      }
     }
     return {false, "every light is white"};
+  }
+
+  Verdict Textured() const {
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+      if (lights_[i].texture) return {true, Called(lights_[i], i) + " shows a texture"};
+    }
+    return {false, "every light is as bright all over"};
   }
 
   Verdict MaterialColor() const {
@@ -355,6 +365,7 @@ constexpr Rule kRules[] = {
     {"light_color", [](Analysis& scene) { return scene.LightColor(); }},
     {"material_color", [](Analysis& scene) { return scene.MaterialColor(); }},
     {"aperture", [](Analysis& scene) { return scene.Aperture(); }},
+    {"textured", [](Analysis& scene) { return scene.Textured(); }},
     {"many_lights", [](Analysis& scene) { return scene.ManyLights(); }},
 };
 

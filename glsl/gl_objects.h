@@ -43,6 +43,19 @@ inline GlObject MakeTexture(const GladGLContext& gl, GLenum internal_format, int
   return texture;
 }
 
+// size.z: layers. Trilinear, clamped to the edge.
+inline GlObject MakeTextureArray(const GladGLContext& gl, GLenum internal_format, int levels, glm::ivec3 size) {
+  GLuint id = 0;
+  gl.CreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+  GlObject texture(gl, id, [](const GladGLContext& table, GLuint name) { table.DeleteTextures(1, &name); });
+  gl.TextureStorage3D(id, levels, internal_format, size.x, size.y, size.z);
+  gl.TextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  gl.TextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl.TextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl.TextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return texture;
+}
+
 inline GlObject MakeBuffer(const GladGLContext& gl, std::size_t bytes, const void* data) {
   GLuint id = 0;
   gl.CreateBuffers(1, &id);

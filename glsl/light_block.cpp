@@ -36,10 +36,21 @@ std::vector<Light> EmittingLights(const Scene& scene) {
   return emitting;
 }
 
+std::vector<ShownTexture> ShownTextures(const std::vector<Light>& lights) {
+  std::vector<ShownTexture> shown;
+  for (const Light& light : lights) {
+    if (!light.texture) continue;
+    const ShownTexture texture{light.texture, light.half_size.x / light.half_size.y};
+    if (std::ranges::find(shown, texture) == shown.end()) shown.push_back(texture);
+  }
+  return shown;
+}
+
 std::vector<glm::vec4> LightBlockRows(const std::vector<Light>& lights) {
   if (lights.size() > kMaxLights) {
     throw InputError(fmt::format("{} lights in the scene; expected at most {}", lights.size(), kMaxLights));
   }
+  const std::vector<ShownTexture> shown = ShownTextures(lights);
   std::vector<glm::vec4> rows;
   rows.reserve(lights.size() * kLightRows);
   for (const Light& light : lights) {
@@ -51,9 +62,12 @@ std::vector<glm::vec4> LightBlockRows(const std::vector<Light>& lights) {
     rows.emplace_back(light.axis_x, half.x);
     rows.emplace_back(light.axis_y, half.y);
     rows.emplace_back(light.axis_x * half.x, area);
-    rows.emplace_back(light.axis_y * half.y, static_cast<float>(light.corners.size()));
-    rows.emplace_back(light.radiance, 0.0);
-    rows.emplace_back(half.x * half.x, half.y * half.y, 2.0 * half.x * half.y, 0.0);
+    const auto layer = light.texture ? std::ranges::find(shown, ShownTexture{light.texture, half.x / half.y}) - shown.begin() + 1 : 0;
+    const glm::ivec2 texels = light.texture ? glm::ivec2(light.texture->width, light.texture->height) : glm::ivec2(0);
+    // Polygons have no texture: the two share a place.
+    rows.emplace_back(light.axis_y * half.y, light.texture ? texels.x : static_cast<int>(light.corners.size()));
+    rows.emplace_back(light.radiance, layer);
+    rows.emplace_back(half.x * half.x, half.y * half.y, 2.0 * half.x * half.y, texels.y);
   }
   return rows;
 }

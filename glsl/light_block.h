@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -16,11 +17,22 @@ constexpr int kCornerRows = 4;  // of a light in the block of corners, 16 KiB, w
 // The lights that emit anything, in the scene's order: all that a technique ever sees.
 std::vector<Light> EmittingLights(const Scene& scene);
 
+// A texture as a rectangle of given proportions shows it: what filters depend on.
+struct ShownTexture {
+  std::shared_ptr<const Image> image;
+  double aspect = 1.0;  // width / height
+  bool operator==(const ShownTexture&) const = default;
+};
+
+// Those of the lights, each once; the layers of the texture arrays of glsl/light_textures.h from 1 on.
+std::vector<ShownTexture> ShownTextures(const std::vector<Light>& lights);
+
 // kLightRows rows per light, as glsl/lights.glsl reads them:
 //   0 centre (m, world), shape (0 rectangle, 1 disk or ellipse, 2 sphere, 3 polygon)   4 half axis A = axis_x · half_size.x (m),
 //   area (m²) 1 normal, 1 if two-sided                                      5 half axis B = axis_y ·
-//   half_size.y (m), corners of a polygon 2 axis_x, half_size.x (m)                                     6 radiance, 0 3 axis_y,
-//   half_size.y (m)                                     7 half_size.x², half_size.y², 2 · x · y (m²), 0
+//   half_size.y (m), corners of a polygon or texels across 2 axis_x, half_size.x (m)             6 radiance, layer of the texture
+//   3 axis_y, half_size.y (m)                           7 half_size.x², half_size.y², 2 · x · y (m²), texels down
+// Without a texture its three are 0.
 // The area is one side's; of a sphere its cross-section πR².
 // Throws InputError where there are more than kMaxLights.
 std::vector<glm::vec4> LightBlockRows(const std::vector<Light>& lights);

@@ -47,6 +47,9 @@ Light LoadLight(int i) {
   light.radiance = vec3(LightRow(i, 6).x);  // white: with grey materials one channel is computed
 #endif
   light.products = LightRow(i, 7).xyz;
+#if EFFECT_TEXTURED
+  light.image = vec3(LightRow(i, 6).w, LightRow(i, 5).w, LightRow(i, 7).w);
+#endif
   return light;
 }
 

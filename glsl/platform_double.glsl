@@ -27,6 +27,31 @@ dvec4 SampleTable(sampler2D table, dvec2 uv) {
   return mix(row_low, row_high, f.y);
 }
 
+#if EFFECT_TEXTURED
+dvec3 FetchLayer(sampler2DArray map, ivec3 texel, int level) { return dvec3(texelFetch(map, texel, level).rgb); }
+
+dvec4 SampleLayerOnce(sampler2DArray map, dvec3 place, int level) {
+  ivec2 last = textureSize(map, level).xy - 1;
+  int layer = int(place.z);
+  dvec2 p = clamp(place.xy * dvec2(last + 1) - 0.5lf, dvec2(0.0lf), dvec2(last));
+  ivec2 low = clamp(ivec2(p), ivec2(0), last);
+  ivec2 high = min(low + 1, last);
+  dvec2 f = p - dvec2(low);
+  dvec4 row_low = mix(dvec4(texelFetch(map, ivec3(low, layer), level)), dvec4(texelFetch(map, ivec3(high.x, low.y, layer), level)), f.x);
+  dvec4 row_high = mix(dvec4(texelFetch(map, ivec3(low.x, high.y, layer), level)), dvec4(texelFetch(map, ivec3(high, layer), level)), f.x);
+  return mix(row_low, row_high, f.y);
+}
+
+// Trilinear, clamped to the edge; place: uv and layer.
+dvec4 SampleLayer(sampler2DArray map, dvec3 place, double level) {
+  double most = double(textureQueryLevels(map) - 1);
+  double held = clamp(level, 0.0lf, most);
+  int low = int(held);
+  int high = min(low + 1, int(most));
+  return mix(SampleLayerOnce(map, place, low), SampleLayerOnce(map, place, high), held - double(low));
+}
+#endif
+
 void WriteRadiance(dvec3 diffuse, dvec3 specular) {
   out_diffuse = vec4(vec3(diffuse), 1.0);
   out_specular = vec4(vec3(specular), 1.0);

@@ -17,6 +17,13 @@ vec4 CornerRow(int light, int row) { return corner_rows[light * CORNER_ROWS + ro
 // Bilinear, clamped to the edge; texel (i, j)'s centre is uv = (i + ½, j + ½) / size.
 vec4 SampleTable(sampler2D table, vec2 uv) { return textureLod(table, uv, 0.0); }
 
+#if EFFECT_TEXTURED
+vec3 FetchLayer(sampler2DArray map, ivec3 texel, int level) { return texelFetch(map, texel, level).rgb; }
+
+// Trilinear, clamped to the edge; place: uv and layer.
+vec4 SampleLayer(sampler2DArray map, vec3 place, float level) { return textureLod(map, place, level); }
+#endif
+
 void WriteRadiance(vec3 diffuse, vec3 specular) {
   out_diffuse = vec4(diffuse, 1.0);
   out_specular = vec4(specular, 1.0);

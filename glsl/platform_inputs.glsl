@@ -9,6 +9,17 @@ layout(binding = 2) uniform sampler2D gbuffer_base_color;  // linear sRGB; w: me
 layout(binding = 14) uniform sampler2D gbuffer_aperture;   // unit axis; w: versine; 0 where nothing was baked
 #endif
 
+#if EFFECT_TEXTURED
+// Textures of lights, one a layer, layer 0 white, in the forms of glsl/light_textures.h.
+layout(binding = 8) uniform sampler2DArray light_image;          // the texels, as many as each has
+layout(binding = 9) uniform sampler2DArray light_weights;        // rules of product integration
+layout(binding = 10) uniform sampler2DArray light_means;         // means over squares
+layout(binding = 11) uniform sampler2DArray light_cosine;        // blurred by a cosine lobe's trace
+layout(binding = 12) uniform sampler2DArray light_cosine_border; // the same, with what lies around the light
+layout(binding = 13) uniform sampler2DArray light_solid_angle;   // blurred by solid angle
+layout(binding = 7) uniform sampler2DArray light_phong;          // blurred by Phong's lobe
+#endif
+
 #define MAX_LIGHTS 256
 #define LIGHT_ROWS 8
 layout(std140, binding = 0) uniform LightBlock {

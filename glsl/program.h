@@ -17,6 +17,9 @@ class Program {
 
   GLuint id() const { return program_.id(); }
 
+  // Whether what the compiler left of the text reads a uniform of this name.
+  bool Reads(const std::string& name) const { return Location(name) >= 0; }
+
   // Setters of uniforms; a name that the compiler dropped or that never was is no error.
   void Set(const std::string& name, int value) const;
   void Set(const std::string& name, float value) const;

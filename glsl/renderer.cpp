@@ -11,6 +11,7 @@
 #include "glsl/gbuffer.h"
 #include "glsl/gl_objects.h"
 #include "glsl/light_block.h"
+#include "glsl/light_textures.h"
 #include "glsl/program.h"
 #include "glsl/table.h"
 #include "scenes/error.h"
@@ -31,6 +32,7 @@ struct Renderer::Impl {
         vertex_array(MakeVertexArray(gl)),
         lights(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kLightRows, nullptr)),
         corners(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kCornerRows, nullptr)),
+        light_textures(gl),
         fullscreen(Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat)) {}
 
   // A technique's table, decoded and uploaded again only where its bytes have changed.
@@ -42,6 +44,7 @@ struct Renderer::Impl {
   struct Pass {
     const Program* program = nullptr;
     std::vector<GLuint> tables;
+    bool textured = false;  // reads the lights' textures
   };
 
   void Allocate(glm::ivec2 size);
@@ -49,8 +52,8 @@ struct Renderer::Impl {
   GLuint LoadTable(const Variant& variant, const arealab::Table& table);
   void SetKnobs(const Pass& pass, const Variant& variant, const std::map<std::string, double>& knobs) const;
   const Pass& KeptPass(const Variant& variant, Precision precision);
-  void DrawPass(const Pass& pass) const { DrawPass(pass, 0, size.y); }
-  void DrawPass(const Pass& pass, int first_row, int rows) const;
+  void DrawPass(const Pass& pass) { DrawPass(pass, 0, size.y); }
+  void DrawPass(const Pass& pass, int first_row, int rows);
   void Black() const;
   std::vector<glm::vec3> ReadBack(const GlObject& texture) const;
   void ReadBack(const GlObject& texture, int first_row, int row_count, std::vector<glm::vec3>& image) const;
@@ -61,6 +64,7 @@ struct Renderer::Impl {
   GlObject vertex_array;  // empty: core contexts draw with one only
   GlObject lights;
   GlObject corners;
+  LightTextures light_textures;
   ExpandedSource fullscreen;
 
   glm::ivec2 size{0};
@@ -118,6 +122,8 @@ Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision 
   std::unique_ptr<Program>& program = programs[source.text];
   if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
   Pass pass{program.get(), {}};
+  const EffectDefines defines = Defines(effects, variant.effects);
+  pass.textured = std::ranges::find(defines, std::pair<std::string, int>("EFFECT_TEXTURED", 1)) != defines.end();
   GLuint unit = kFirstTableUnit;
   for (const arealab::Table& table : variant.technique->tables) {
     program->Set("table_" + table.name, static_cast<int>(unit++));
@@ -156,7 +162,7 @@ const Renderer::Impl::Pass& Renderer::Impl::KeptPass(const Variant& variant, Pre
   return passes.emplace(key, std::move(pass)).first->second;
 }
 
-void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) const {
+void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) {
   pass.program->Set("view_position", gbuffer.pixels().view_position);
   pass.program->Set("light_count", light_count);
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
@@ -175,6 +181,7 @@ void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) const {
   for (std::size_t i = 0; i < pass.tables.size(); ++i) {
     gl.BindTextureUnit(kFirstTableUnit + static_cast<GLuint>(i), pass.tables[i]);
   }
+  if (pass.textured) light_textures.Bind(*pass.program);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, lights.id());
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 1, corners.id());
   const bool part = rows < size.y;
@@ -221,6 +228,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   const std::vector<Light> lights = EmittingLights(scene);
   const std::vector<glm::vec4> rows = LightBlockRows(lights);
   impl_->gbuffer.Draw(scene, size);
+  impl_->light_textures.Take(lights);
   impl_->Allocate(size);
   impl_->light_count = static_cast<int>(lights.size());
   impl_->scene.name = scene.name;
@@ -281,7 +289,7 @@ void Renderer::DrawThrough() {
     const ExpandedSource source = Expand(impl_->library, "through.frag", {}, Defines(impl_->effects), Precision::kFloat);
     impl_->through = std::make_unique<Program>(impl_->gl, impl_->fullscreen, source);
   }
-  impl_->DrawPass({impl_->through.get(), {}});
+  impl_->DrawPass({impl_->through.get(), {}, false});
   impl_->gl.Finish();
 }
 

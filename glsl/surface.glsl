@@ -34,6 +34,9 @@ struct Light {
   bool turned;        // whether FaceLight has turned the frame
 #endif
   vec3 products;      // m²: half_size.x², half_size.y², 2 · half_size.x · half_size.y
+#if EFFECT_TEXTURED
+  vec3 image;         // its layer in the texture arrays, 0 where it shows none; width, height in texels
+#endif
 };
 
 // Reflected radiance towards the viewer, in the light's unit.

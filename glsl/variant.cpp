@@ -135,6 +135,7 @@ struct Need {
 constexpr Need kNeeds[] = {
     {"two_sided", "two-sided lights; the scene has one"},
     {"fresnel", "a Fresnel term; the scene's materials reflect less than all light"},
+    {"textured", "textured lights; the scene has one"},
 };
 
 }  // namespace
@@ -171,6 +172,7 @@ Variant WithAllEffects(Variant variant) {
   const Technique& technique = *variant.technique;
   for (const std::string& effect : EffectNames()) variant.effects[effect] = true;
   variant.effects.erase("aperture");
+  variant.effects.erase("textured");
   for (const LightShape shape : kLightShapes) {
     if (std::ranges::find(technique.shapes, shape) == technique.shapes.end()) variant.effects.erase(Name(shape));
   }

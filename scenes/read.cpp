@@ -19,6 +19,7 @@
 #include "scenes/edit_distance.h"
 #include "scenes/error.h"
 #include "scenes/image.h"
+#include "scenes/light_texture.h"
 #include "scenes/mesh_file.h"
 #include "scenes/scene.h"
 #include "scenes/shapes.h"
@@ -671,7 +672,7 @@ class SceneReader {
   void ReadLight(const Fields& fields) {
     const std::string shape = fields.Word("shape", ShapeNames(), std::nullopt);
     std::vector<std::string> known = {"name",     "shape", "position",  "color",
-                                      "radiance", "flux",  "luminance", "luminous_flux"};
+                                      "radiance", "flux",  "luminance", "luminous_flux", "texture"};
     Light light;
     light.shape = *std::find_if(std::begin(kLightShapes), std::end(kLightShapes), [&](LightShape s) { return shape == Name(s); });
     known.emplace_back(SizeKey(light.shape));
@@ -684,6 +685,7 @@ class SceneReader {
     if (light.shape != LightShape::kPolygon) ReadLightSize(fields, light);
     if (IsFlat(light.shape)) ReadLightAxes(fields, light);
     if (light.shape == LightShape::kPolygon) ReadCorners(fields, light);
+    ReadLightTexture(fields, light);
     ReadEmission(fields, light);
     scene_.lights.push_back(std::move(light));
   }
@@ -764,6 +766,19 @@ class SceneReader {
     light.axis_y = glm::cross(light.normal, light.axis_x);
   }
 
+  void ReadLightTexture(const Fields& fields, Light& light) {
+    const toml::node* node = fields.Find("texture");
+    if (!node) return;
+    if (light.shape != LightShape::kRectangle) {
+      fields.Fail(*node, fmt::format("'texture' in {} stands on a {}; expected a rectangle", fields.title(), Name(light.shape)));
+    }
+    const FileInFolder place = Resolve(fields, *node, "texture");
+    std::shared_ptr<const Image>& texture = light_textures_[place.file];
+    if (!texture) texture = fields.At(*node, [&] { return LoadLightTexture(place.file); });
+    light.texture = texture;
+    light.texture_path = *node->value<std::string>();
+  }
+
   void ReadEmission(const Fields& fields, Light& light) const {
     const bool photometric = scene_.units == Units::kPhotometric;
     const char* per_area = photometric ? "luminance" : "radiance";
@@ -802,6 +817,9 @@ class SceneReader {
       // The colour gives the hue alone: the luminance-weighted radiance is what the file states.
       light.radiance =
           color / Luminance(color) * (density ? value : value / (glm::pi<double>() * light.Area()));
+      const double mean = light.texture ? Luminance(color / Luminance(color) * MeanTexel(*light.texture)) : 1.0;
+      if (mean == 0.0) fields.Fail(*color_node, fmt::format("the light's color and its texture have no channel in common; expected {}", kColor.expected));
+      if (flux) light.radiance /= mean;
     }
     if (!(Luminance(light.radiance) > 0.0)) {
       fields.Fail(node, fmt::format("{} emits nothing; expected {}", fields.title(), kRadiance.expected));
@@ -818,6 +836,7 @@ class SceneReader {
   std::set<std::string> material_names_;
   std::set<std::string> light_names_;
   std::map<std::pair<fs::path, ImageUse>, std::shared_ptr<const Image>> images_;
+  std::map<fs::path, std::shared_ptr<const Image>> light_textures_;
 };
 
 }  // namespace

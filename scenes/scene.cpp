@@ -9,6 +9,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "scenes/error.h"
+#include "scenes/light_texture.h"
 
 namespace arealab {
 namespace {
@@ -18,7 +19,8 @@ namespace fs = std::filesystem;
 // The order of the report: from the plainest question to the fullest picture. Scenes that are not named
 // follow by name.
 constexpr const char* kOrder[] = {"gloss",  "beckmann", "sinking", "grazing", "mirror", "strip",
-                                  "shapes", "bulbs",    "spheres", "relief",  "scan",   "sixteen"};
+                                  "shapes", "bulbs",    "spheres", "relief",  "scan",   "sixteen",
+                                  "screen"};
 
 fs::path SceneFolder() {
   const char* folder = std::getenv("AREALAB_SCENES");
@@ -145,7 +147,7 @@ double Light::Area() const {
 }
 
 double Light::Flux() const {
-  return Luminance(radiance) * glm::pi<double>() * Area();
+  return Luminance(texture ? radiance * MeanTexel(*texture) : radiance) * glm::pi<double>() * Area();
 }
 
 std::vector<fs::path> BuiltInScenes() {

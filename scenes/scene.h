@@ -37,7 +37,14 @@ const char* Name(Brdf brdf);
 // Relative luminance of linear sRGB: a quantity in W per channel keeps its unit, Rec. 709 weights.
 double Luminance(const glm::dvec3& color);
 
-// An emitter of constant radiance. axis_x, axis_y, normal are unit and right-handed: normal = axis_x ×
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<glm::vec4>
+      pixels;  // row 0 is the top; colours already linear, data (normals, roughness) as stored
+};
+
+// An emitter of constant radiance, or of radiance × its texture. axis_x, axis_y, normal are unit and right-handed: normal = axis_x ×
 // axis_y, and the lit side is the one that normal points to (a sphere emits everywhere and ignores the axes).
 struct Light {
   std::string name;
@@ -53,9 +60,11 @@ struct Light {
   std::vector<glm::dvec2> corners;
   glm::dvec3 radiance{1.0};  // in the scene's unit, linear sRGB primaries
   bool two_sided = false;
+  std::shared_ptr<const Image> texture;  // rectangles only, see scenes/light_texture.h; none: the radiance is everywhere
+  std::string texture_path;              // as the scene file has it
 
   double Area() const;  // m², of the lit side or sides together; sphere: 4πR²
-  double Flux() const;  // luminance of radiance × π × Area(): W or lm
+  double Flux() const;  // mean luminance × π × Area(): W or lm
 };
 
 // What keeps corners from being a light: too few, too many, equal ones, three in a line, not convex; nothing where they do.
@@ -63,13 +72,6 @@ std::optional<std::string> WhyNoPolygon(const std::vector<glm::dvec2>& corners);
 
 // Makes the light a polygon of these corners (m, along its axes, from `center`), in either order; moves `center` to their centroid.
 void SetCorners(Light& light, std::vector<glm::dvec2> corners);
-
-struct Image {
-  int width = 0;
-  int height = 0;
-  std::vector<glm::vec4>
-      pixels;  // row 0 is the top; colours already linear, data (normals, roughness) as stored
-};
 
 struct Material {
   std::string name;

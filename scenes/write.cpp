@@ -224,6 +224,11 @@ bool SameSize(const Light& a, const Light& b) {
          });
 }
 
+void WriteTexture(TableText& table, const Light& before, const Light& after) {
+  if (before.texture_path == after.texture_path) return;
+  after.texture_path.empty() ? table.Remove("texture") : table.Set("texture", Quoted(after.texture_path));
+}
+
 void WriteLight(TableText& table, const Light& before, const Light& after, Units units) {
   const SizeEntry was = SizeOf(before), is = SizeOf(after);
   // A file's corners need not lie about their centroid, from which the light's do: place and corners are written together.
@@ -246,6 +251,7 @@ void WriteLight(TableText& table, const Light& before, const Light& after, Units
   const bool turned = reoriented || !IsFlat(before.shape) || (table.Find("target") != nullptr && placed);
   if (flat && turned) WriteAxes(table, after);
   if (flat && before.two_sided != after.two_sided) table.Set("two_sided", after.two_sided ? "true" : "false");
+  WriteTexture(table, before, after);
   WriteEmission(table, before, after, units);
 }
 
@@ -259,6 +265,7 @@ std::string NewLight(const Light& light, Units units) {
   }
   const SizeEntry size = SizeOf(light);
   text += fmt::format("{} = {}\n", size.key, size.text);
+  if (light.texture) text += fmt::format("texture = {}\n", Quoted(light.texture_path));
   const glm::dvec3 hue = Hue(light);
   if (!CloseColor(hue, glm::dvec3(1.0))) text += fmt::format("color = {}\n", Numbers(hue / std::max({hue.x, hue.y, hue.z})));
   return text + fmt::format("{} = {}\n", units == Units::kPhotometric ? "luminance" : "radiance", Number(Luminance(light.radiance)));
@@ -305,7 +312,7 @@ const Thing* Named(const std::vector<Thing>& things, const std::string& name) {
 
 bool SameLight(const Light& a, const Light& b) {
   const bool flat = IsFlat(a.shape);
-  return a.name == b.name && a.shape == b.shape && Close(a.center, b.center) && SameSize(a, b) && glm::distance(a.radiance, b.radiance) <= 10.0 * kDigits * glm::length(b.radiance) &&
+  return a.name == b.name && a.shape == b.shape && a.texture_path == b.texture_path && Close(a.center, b.center) && SameSize(a, b) && glm::distance(a.radiance, b.radiance) <= 10.0 * kDigits * glm::length(b.radiance) &&
          (!flat || (a.two_sided == b.two_sided && Close(a.normal, b.normal) && Close(a.axis_x, b.axis_x)));
 }
 

@@ -29,7 +29,8 @@ bool SameAll(const std::vector<T>& a, const std::vector<T>& b) {
 
 bool Same(const Light& a, const Light& b) {
   return a.name == b.name && a.shape == b.shape && a.center == b.center && a.axis_x == b.axis_x && a.axis_y == b.axis_y &&
-         a.normal == b.normal && a.half_size == b.half_size && a.corners == b.corners && a.radiance == b.radiance && a.two_sided == b.two_sided;
+         a.normal == b.normal && a.half_size == b.half_size && a.corners == b.corners && a.radiance == b.radiance &&
+         a.two_sided == b.two_sided && a.texture == b.texture;
 }
 
 bool Same(const Material& a, const Material& b) {

@@ -1,11 +1,11 @@
 /*---
 summary = "One representative point for the diffuse lobe, one at the middle of the light's part in the lobe's cone for the specular"
 citation = "Drobot 2014"
-author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with the light's solid angle, as Lagarde & de Rousiers 2014 read it too, because only so does his stated error come out (eq. 1.16 by the word, its dA the whole light's, is extent=area and several times too bright near a light); the shipped point=halfway brought onto the light, without which a small light's place would not matter; cone=threshold, his cone's rule carried to GGX; his sphere's diffuse in closed form. Ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, no form factor above 1, no specular solid angle above the cone's own, cone=energy. He shipped rectangles with a Phong lobe only, because of artefacts with Blinn-Phong"
+author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with the light's solid angle, as Lagarde & de Rousiers 2014 read it too, because only so does his stated error come out (eq. 1.16 by the word, its dA the whole light's, is extent=area and several times too bright near a light); the shipped point=halfway brought onto the light, without which a small light's place would not matter; cone=threshold, his cone's rule carried to GGX; his sphere's diffuse in closed form. Ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, no form factor above 1, no specular solid angle above the cone's own, cone=energy. He shipped rectangles with a Phong lobe only, because of artefacts with Blinn-Phong. Textures by his look-ups of eqs. 1.24 and 1.28, each over the same integral of a white light, stored in mip levels as he shipped them: diffuse by distance at the diffuse point, specular by the cone's radius on the light (his g') at the middle of its part, always of Phong's lobe"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
-effects = ["two_sided", "fresnel", "many_lights"]
+effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["lambert_sphere"]
 
 [[option]]
@@ -39,6 +39,7 @@ cone = "threshold"
 ---*/
 #include "brdf.glsl"
 #include "importance_cone.glsl"
+#include "light_texture.glsl"
 #include "representative_point.glsl"
 #include "solid_angle.glsl"
 #include "spherical_cap.glsl"
@@ -141,10 +142,19 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     float cos_surface = max(dot(local.normal, to_point) * inverse_distance, 0.0);
     result.diffuse = surface.diffuse_albedo * min(cos_surface * solid_angle / kPi, 1.0);
 
+#if EFFECT_TEXTURED
+    float blur = BlurLevel(dot(to_point, to_point) / light.area);
+    result.diffuse *= SampleLayer(light_solid_angle, vec3(TextureCoordinates(light, diffuse_point), light.image.x), blur).rgb;
+#endif
+
     vec3 to_part = vec3(footprint.offset + part.shift, -point.z);
     inverse_distance = inversesqrt(dot(to_part, to_part));
     solid_angle = part.area * point.z * inverse_distance * inverse_distance * inverse_distance;
     result.specular = SpecularLobe(local, view, to_part * inverse_distance) * min(solid_angle, cone_solid_angle);
+#if EFFECT_TEXTURED
+    blur = BlurLevel(footprint.radius * footprint.radius / light.area);
+    result.specular *= SampleLayer(light_phong, vec3(TextureCoordinates(light, footprint.center + part.shift), light.image.x), blur).rgb;
+#endif
   }
 #endif
   result.diffuse *= light.radiance;

@@ -1,11 +1,11 @@
 /*---
 summary = "Linearly transformed cosines, horizon by the vector form factor's proxy sphere"
 citation = "Hill & Heitz 2016; Heitz & Hill 2017; Snyder 1996; Heitz et al. 2016"
-author_note = "Published: clipped sphere from a table, rational edge, disks by a cubic, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, disks and spheres by their cone, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
+author_note = "Published: clipped sphere from a table, rational edge, disks by a cubic, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, disks and spheres by their cone, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light. Of a textured light's prefilter the paper's idea is kept (one look-up a lobe, its level by distance²/area), the kernel is the cosine lobe's own, normalised over the light."
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
-effects = ["two_sided", "fresnel"]
+effects = ["two_sided", "fresnel", "textured"]
 exact = ["point_limit"]
 
 [[option]]
@@ -88,6 +88,22 @@ choices = [
   ["lobe", "averaged over the whole lobe, wherever the light is"],
 ]
 
+[[option]]
+name = "texture"
+summary = "Where the texture of a light is looked up"
+choices = [
+  ["normal", "along the polygon's normal, as the paper does"],
+  ["vector", "along the vector form factor, as the talk proposes"],
+]
+
+[[option]]
+name = "border"
+summary = "What a look-up beside the light's edge finds"
+choices = [
+  ["yes", "the texture blurred around the light too"],
+  ["no", "the nearest place on the light"],
+]
+
 [tables]
 ltc_matrix = "ltc_{brdf}_{fit}_{lobes}_lobe_{frame}_{norm}_{axis}.exr"
 ltc_terms = "ltc_{brdf}_{fit}_{lobes}_lobe_{axis}_terms.exr"
@@ -116,6 +132,7 @@ norm = "none"
 #include "clipped_proxy.glsl"
 #include "disk"
 #include "ltc_shading.glsl"
+#include "shown_texture.glsl"
 #if EFFECT_POLYGON
 #include "polygon_light.glsl"
 #endif
@@ -126,6 +143,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   float form_factor;
   vec3 transformed;
+#if EFFECT_TEXTURED
+  vec3 whole_transformed = vec3(0.0);  // unclipped
+#endif
 #if EFFECT_POLYGON
   if (light.shape == SHAPE_POLYGON) {
     PolygonView view = ViewPolygon(light, surface.position, frame);
@@ -145,6 +165,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     form_factor = LambertProxy(LambertVector(view));
     VectorFormFactor whole = ParallelogramVector(LtcTransform(cell.m, view.center), LtcTransform(cell.m, view.half_a), LtcTransform(cell.m, view.half_b));
     transformed = vec3(whole.f.x, whole.f.y, ClippedProxy(whole));
+#if EFFECT_TEXTURED
+    whole_transformed = whole.f;
+#endif
   }
 #if EFFECT_DISK || EFFECT_SPHERE
   else
@@ -154,5 +177,15 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
 #endif
   }
-  return LtcRadiance(surface, light, frame, cell, form_factor, transformed);
+  Radiance radiance = LtcRadiance(surface, light, frame, cell, form_factor, transformed);
+#if EFFECT_TEXTURED
+  RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
+#if TEXTURE_VECTOR
+  vec3 vector = ParallelogramVector(view.center, view.half_a, view.half_b).f;
+#else
+  vec3 vector = vec3(0.0);
+#endif
+  radiance = ShowTexture(radiance, light, view, cell.m, vector, whole_transformed);
+#endif
+  return radiance;
 }

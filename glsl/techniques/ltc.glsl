@@ -1,11 +1,11 @@
 /*---
 summary = "Linearly transformed cosines, clipped exactly at the horizon"
 citation = "Heitz et al. 2016; Hill & Heitz 2016; Heitz & Hill 2017; Lambert 1760"
-author_note = "Published: 16-case clip, rational edge, disks by a cubic and a proxy sphere (no exact clip was), tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: branchless clip in the light's plane, disks and spheres by their cone and exactly clipped, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
+author_note = "Published: 16-case clip, rational edge, disks by a cubic and a proxy sphere (no exact clip was), tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: branchless clip in the light's plane, disks and spheres by their cone and exactly clipped, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light. Of a textured light's prefilter the paper's idea is kept (one look-up a lobe, its level by distance²/area), the kernel is the cosine lobe's own, normalised over the light."
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
-effects = ["two_sided", "fresnel"]
+effects = ["two_sided", "fresnel", "textured"]
 exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_polygon", "lambert_ellipse", "point_limit"]
 
 [[option]]
@@ -96,6 +96,22 @@ choices = [
   ["lobe", "averaged over the whole lobe, wherever the light is"],
 ]
 
+[[option]]
+name = "texture"
+summary = "Where the texture of a light is looked up"
+choices = [
+  ["normal", "along the polygon's normal, as the paper does"],
+  ["vector", "along the vector form factor, as the talk proposes"],
+]
+
+[[option]]
+name = "border"
+summary = "What a look-up beside the light's edge finds"
+choices = [
+  ["yes", "the texture blurred around the light too"],
+  ["no", "the nearest place on the light"],
+]
+
 [tables]
 ltc_matrix = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{frame}_{norm}_{axis}.exr"
 ltc_terms = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{axis}_terms.exr"
@@ -124,6 +140,7 @@ norm = "none"
 #include "horizon"
 #include "disk"
 #include "ltc_shading.glsl"
+#include "shown_texture.glsl"
 #if EFFECT_POLYGON
 #include "polygon_light.glsl"
 #endif
@@ -167,5 +184,14 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   RoundLightFactors(light, surface.position, frame, cell, form_factor, transformed);
 #endif
   }
-  return LtcRadiance(surface, light, frame, cell, form_factor, transformed);
+  Radiance radiance = LtcRadiance(surface, light, frame, cell, form_factor, transformed);
+#if EFFECT_TEXTURED
+  RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
+#if TEXTURE_VECTOR
+  radiance = ShowTexture(radiance, light, view, cell.m, LobeVector(vec4(1.0, 0.0, 0.0, 1.0), view), transformed);
+#else
+  radiance = ShowTexture(radiance, light, view, cell.m, vec3(0.0), transformed);
+#endif
+#endif
+  return radiance;
 }

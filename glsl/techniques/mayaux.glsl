@@ -1,11 +1,11 @@
 /*---
 summary = "The rectangle clipped to a rectangle; its solid angle along an average direction; the lobe as a glossiness cone"
 citation = "Mayaux 2017"
-author_note = "'Adding Area Lights': the fake clipping both ways round, rho/pi (n.w) times the clipped rectangle's solid angle along its average direction, specular as the BRDF's integral times the mean radiance within the glossiness cone, faded round the light's border as his look-up fades. rho/pi, counted twice in its eq. 1, is counted once here, and the radiance of the specular is a mean. The article has no formula for three of its parts; ours: the average direction (published: to the clipped rectangle's centre, as his test project has it; default: the mean over its solid angle), the cone (as wide as conserves the lobe's energy), and the BRDF's integral (the lobe's whole energy, by a fit, times the cone's share that the rectangle covers, Fresnel split off). The diffuse lobe has no Fresnel term in the scenes: his F' is coupling=fresnel, as 1 - F. His Ward is not a BRDF of the project yet, nor are textured lights, so mip levels and alpha are left out. No average tells where in a lobe a small light is: its shape is a plateau"
+author_note = "'Adding Area Lights': the fake clipping both ways round, rho/pi (n.w) times the clipped rectangle's solid angle along its average direction, specular as the BRDF's integral times the mean radiance within the glossiness cone, faded round the light's border as his look-up fades. rho/pi, counted twice in its eq. 1, is counted once here, and the radiance of the specular is a mean. The article has no formula for three of its parts; ours: the average direction (published: to the clipped rectangle's centre, as his test project has it; default: the mean over its solid angle), the cone (as wide as conserves the lobe's energy), and the BRDF's integral (the lobe's whole energy, by a fit, times the cone's share that the rectangle covers, Fresnel split off). The diffuse lobe has no Fresnel term in the scenes: his F' is coupling=fresnel, as 1 - F. His Ward is not a BRDF of the project yet. Textures by mip levels of the look-up's size, as his SampleAreaLight has them; alpha multiplies the texel in both lobes, as it does what the scene emits (his in the diffuse alone). No average tells where in a lobe a small light is: its shape is a plateau"
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
-effects = ["two_sided", "fresnel", "many_lights"]
+effects = ["two_sided", "fresnel", "many_lights", "textured"]
 
 [[option]]
 name = "segment"
@@ -41,12 +41,22 @@ coupling = "none"
 #include "segment"
 #include "fake_clip.glsl"
 #include "importance_cone.glsl"
+#include "light_texture.glsl"
 #include "polygon.glsl"
 #include "representative_point.glsl"
 #include "solid_angle.glsl"
 #include "specular_albedo.glsl"
 #include "vector_form_factor.glsl"
 #include "lit.glsl"
+
+#if EFFECT_TEXTURED
+// The texture's mean over about the rectangle center ± half_size (m, from the light's centre), by one trilinear look-up.
+vec3 MipTexel(Light light, vec2 center, vec2 half_size) {
+  vec2 delta_uv = 0.5 * half_size / light.half_size;
+  float radius = 128.0 * 0.5 * (delta_uv.x + delta_uv.y);  // texels of level 0
+  return SampleLayer(light_means, vec3(TextureCoordinates(light, center), light.image.x), log2(1e-4 + radius)).rgb;
+}
+#endif
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   Radiance result;
@@ -80,6 +90,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   float form_factor = max(mean.height, 0.0);
 #endif
   result.diffuse = surface.diffuse_albedo * light.radiance * min(form_factor, 1.0);
+#if EFFECT_TEXTURED
+  result.diffuse *= MipTexel(light, center, half_size);
+#endif
 #if COUPLING_FRESNEL
   vec3 sum = average + view;
   float v_dot_h = dot(view, sum) * inversesqrt(max(dot(sum, sum), 1e-20));
@@ -103,5 +116,8 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   vec3 reflectance = surface.f0 * energy.x;
 #endif
   result.specular = reflectance * light.radiance * (min(share, 1.0) * fade);
+#if EFFECT_TEXTURED
+  result.specular *= MipTexel(light, center + cone.center, vec2(cone.radius));
+#endif
   return result;
 }

@@ -6,7 +6,7 @@ shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 yardstick = true
-effects = ["two_sided", "fresnel", "many_lights"]
+effects = ["two_sided", "fresnel", "many_lights", "textured"]
 
 [[option]]
 name = "samples"
@@ -28,6 +28,7 @@ max = 1000000.0
 ---*/
 #include "ggx_sampling.glsl"
 #include "light_sampling.glsl"
+#include "light_texture.glsl"
 #include "low_discrepancy.glsl"
 #include "ltc.glsl"  // the shading frame
 #include "specular_lobe.glsl"
@@ -116,6 +117,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
       to_light = frame.tangent * local.x + frame.bitangent * local.y + frame.normal * local.z;
     }
     float light_density = 0.0;  // stays 0 where the lobe's sample misses the light
+#if EFFECT_TEXTURED
+    vec3 texel = vec3(1.0);
+#endif
 #if EFFECT_SPHERE
     if (light.shape == SHAPE_SPHERE) {
       if (of_light) to_light = SampleCap(cap, u);
@@ -147,6 +151,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
       }
       vec2 place = vec2(point.x + on_light.x, point.y + on_light.y);
       bool faced = dot(light.normal, to_light) < 0.0;
+#if EFFECT_TEXTURED
+      texel = ExactTexel(light, TextureCoordinates(light, place));
+#endif
 #if EFFECT_RECTANGLE
       if (light.shape == SHAPE_RECTANGLE && faced && (of_light || (abs(place.x) <= light.half_size.x && abs(place.y) <= light.half_size.y))) {
         light_density = SphericalRectangleDensity(rectangle, on_light);
@@ -173,7 +180,11 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
       vec3 sum = to_view + to_light;
       vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-20));
       float lobe_density = VisibleMirrorDensity(n_dot_v, surface.alpha, GgxDensityBetween(surface.normal, half_vector, surface.alpha));
+#if EFFECT_TEXTURED
+      vec3 weight = texel * (2.0 / (light_density + lobe_density));
+#else
       float weight = 2.0 / (light_density + lobe_density);
+#endif
       result.diffuse += surface.diffuse_albedo * (weight * n_dot_l / kPi);
       result.specular += SpecularLobe(surface, to_view, to_light) * weight;
     }

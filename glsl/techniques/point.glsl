@@ -1,13 +1,14 @@
 /*---
 summary = "A point at the light's centre with the light's intensity towards the surface: the baseline"
 citation = "far-field limit of an area light; intensity and its cosine as in Drobot 2014, eq. 1.16"
-author_note = "published and default form are the same: there is one"
+author_note = "published and default form are the same: there is one. Of a textured light its mean"
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
-effects = ["two_sided", "fresnel", "many_lights"]
+effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["point_limit"]
 ---*/
+#include "light_texture.glsl"
 #include "lit.glsl"
 #include "specular_lobe.glsl"
 
@@ -24,7 +25,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
   // Intensity L·A·cosθ_l, W/sr; area is a sphere's cross-section and a sphere has no cosine.
   float cos_light = light.shape == SHAPE_SPHERE ? 1.0 : max(-dot(light.normal, to_light), 0.0);
-  vec3 irradiance = light.radiance * (light.area * cos_light * n_dot_l / distance2);
+  vec3 irradiance = MeanRadiance(light) * (light.area * cos_light * n_dot_l / distance2);
 
   radiance.diffuse = surface.diffuse_albedo * irradiance / kPi;
 

@@ -1,11 +1,11 @@
 /*---
 summary = "The truth's own integrals in the shader: closed form factors, Gauss rays in the slope plane; no noise"
 citation = "Lambert 1760; Walter et al. 2007; Heitz 2014"
-author_note = "Ours: the rule of the ground truth at a fixed number of nodes"
+author_note = "Ours: the rule of the ground truth at a fixed number of nodes; of a textured light, squares divided until the lobe is even over each, with the texture's own weights"
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
-effects = ["two_sided", "fresnel", "many_lights"]
+effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_polygon", "lambert_ellipse", "ggx_rectangle", "ggx_disk", "ggx_sphere", "ggx_polygon", "ggx_ellipse", "point_limit"]
 
 [[option]]
@@ -19,6 +19,7 @@ choices = [
 #include "gauss_nodes.glsl"
 #include "outline.glsl"
 #include "brdf"
+#include "textured_rectangle.glsl"
 
 // Half the nodes do where a ray's y or a panel's range of it is shorter: Gauss's error falls with the stretch's 2N-th power.
 const float kShortReach = 0.15;
@@ -234,6 +235,14 @@ vec2 SpecularIntegrals(Outline outline, LobeView view) {
 }
 
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+#if EFFECT_TEXTURED
+  if (light.image.x > 0.0) {
+    Radiance textured = TexturedRectangle(surface, light, to_view);
+    textured.diffuse *= light.radiance;
+    textured.specular *= light.radiance;
+    return textured;
+  }
+#endif
   LobeView view;
   view.cos_v = clamp(dot(surface.normal, to_view), 1e-4, 1.0);
   view.alpha = surface.alpha;

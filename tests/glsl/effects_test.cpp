@@ -44,6 +44,16 @@ TEST(Effects, ADistantLampOverAMatteWallCallsForLittle) {
   EXPECT_EQ(SceneEffect(MatteWall(), "specular").reason, "every material is matte: a non-metal of specular = 0");
 }
 
+TEST(Effects, ATextureIsSeenAndItsColours) {
+  Scene scene = MatteWall();
+  scene.lights[0].texture = std::make_shared<Image>(Image{2, 1, {glm::vec4(1.0f), glm::vec4(0.5f)}});
+  EXPECT_THAT(On(scene), ElementsAre("rectangle", "diffuse", "textured"));
+  EXPECT_EQ(SceneEffect(scene, "textured").reason, "light \"lamp\" shows a texture");
+  scene.lights[0].texture = std::make_shared<Image>(Image{1, 1, {glm::vec4(1.0f, 0.5f, 1.0f, 1.0f)}});
+  EXPECT_THAT(On(scene), ElementsAre("rectangle", "diffuse", "light_color", "textured"));
+  EXPECT_EQ(SceneEffect(scene, "light_color").reason, "light \"lamp\" has a coloured texture");
+}
+
 TEST(Effects, FollowTheMaterials) {
   Scene scene = MatteWall();
   Material& wall = scene.materials[0];

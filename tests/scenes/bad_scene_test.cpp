@@ -158,6 +158,25 @@ std::vector<BadScene> BadScenes() {
        "followed"},
       {"NormalScaleNegative", Material("name = \"grey\"\nnormal_scale = -1 #HERE\n"),
        "'normal_scale' in [[material]] 'grey' is -1; expected a number from 0 to 16"},
+      {"LightTextureMissing", Light(kSized + "radiance = 1.0\ntexture = \"wood.png\" #HERE\n"),
+       "no file 'wood.png'; expected a file in the scene's folder"},
+      {"LightTextureNotAnImage", Light(kSized + "radiance = 1.0\ntexture = \"not_an_image.png\" #HERE\n"),
+       "'not_an_image.png' is not an image that can be read; expected a whole PNG, JPEG, EXR, HDR, TGA or TIFF file"},
+      {"LightTextureLeavesFolder", Light(kSized + "radiance = 1.0\ntexture = \"../secret.png\" #HERE\n"),
+       "'../secret.png' leaves the scene's folder; expected a path inside it, links followed"},
+      {"LightTextureIsNumber", Light(kSized + "radiance = 1.0\ntexture = 3 #HERE\n"),
+       "'texture' in [[light]] 'lamp' is an integer; expected a path as a string"},
+      {"LightTextureNegative", Light(kSized + "radiance = 1.0\ntexture = \"negative.exr\" #HERE\n"),
+       "'negative.exr' has a negative pixel at (1, 0); expected a light's texels to be 0 or more"},
+      {"LightTextureNan", Light(kSized + "radiance = 1.0\ntexture = \"nan.exr\" #HERE\n"),
+       "'nan.exr' has a pixel that is not finite at (1, 0); expected finite values"},
+      {"LightTextureBlack", Light(kSized + "radiance = 1.0\ntexture = \"black.ppm\" #HERE\n"),
+       "'black.ppm' is black; expected a light's texture to emit something"},
+      {"LightTextureOnADisk",
+       Light("shape = \"disk\"\nposition = [0, 0, 2]\ntarget = [0, 0, 0]\nradius = 1.0\nradiance = 1.0\ntexture = \"red.ppm\" #HERE\n"),
+       "'texture' in [[light]] 'lamp' stands on a disk; expected a rectangle"},
+      {"LightTextureWithoutItsColor", Light(kSized + "radiance = 1.0\ntexture = \"red.ppm\"\ncolor = [0.0, 1.0, 0.0] #HERE\n"),
+       "the light's color and its texture have no channel in common; expected numbers from 0 to 1e6, not all zero"},
       {"NoSurface", "# Nothing? #HERE\n" + kCamera + kMaterial + kLight,
        "the scene has no surfaces; expected at least one [[surface]]"},
       {"SurfaceWithoutType", kCamera + kMaterial + kLight + "[[surface]] #HERE\nsize = [1, 1]\n",
@@ -263,7 +282,7 @@ std::vector<BadScene> BadScenes() {
        "'shape' in [[light]] 'lamp' is 'sphare'; expected 'sphere'"},
       {"LightUnknownKey", Light("intensity = 3 #HERE\n" + kSized),
        "unknown key 'intensity' in [[light]] 'lamp'; expected one of: name, shape, position, color, "
-       "radiance, flux, luminance, luminous_flux, size, target, normal, rotation, up, two_sided"},
+       "radiance, flux, luminance, luminous_flux, texture, size, target, normal, rotation, up, two_sided"},
       {"LightNameTwice",
        kCamera + kMaterial + kSurface + kLight + "[[light]]\nname = \"lamp\" #HERE\n" + kSized +
            "radiance = 1\n",
@@ -318,7 +337,7 @@ std::vector<BadScene> BadScenes() {
        Light(
            "shape = \"sphere\"\nposition = [0, 0, 1]\nradius = 2\ntarget = [0, 0, 0] #HERE\nradiance = 1\n"),
        "unknown key 'target' in [[light]] 'lamp'; expected one of: name, shape, position, color, radiance, "
-       "flux, luminance, luminous_flux, radius"},
+       "flux, luminance, luminous_flux, texture, radius"},
       {"LightWithoutDirection",
        kCamera + kMaterial + kSurface +
            "[[light]] #HERE\nshape = \"disk\"\nposition = [0, 0, 1]\nradius = 1\nradiance = 1\n",
@@ -382,6 +401,10 @@ class BadSceneTest : public SceneFolder, public ::testing::WithParamInterface<Ba
   // Files that some of the scenes name.
   void SetUp() override {
     Write("not_an_image.png", "these are words");
+    Write("red.ppm", "P3 1 1 255 255 0 0\n");
+    Write("black.ppm", "P3 1 1 255 0 0 0\n");
+    WriteImage("negative.exr", {1.0f, -1.0f});
+    WriteImage("nan.exr", {1.0f, NAN});
     Write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     Write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     Write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");

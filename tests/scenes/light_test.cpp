@@ -2,6 +2,7 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "scenes/light_texture.h"
 #include "tests/scenes/scene_folder.h"
 
 namespace arealab {
@@ -57,6 +58,27 @@ TEST_F(LightTest, FluxComesBackThroughRadiance) {
       EXPECT_NEAR(Read(shape + color + "luminous_flux = 800.0\n", "photometric").Flux(), 800.0, 1e-10);
     }
   }
+}
+
+// sRGB integers become linear, floats are; flux counts the texture's mean luminance; the image is upright, its row 0 at the top.
+TEST_F(LightTest, TextureMultipliesTheRadiance) {
+  Write("two.ppm", "P3 2 1 255  255 255 255  188 188 188\n");
+  WriteImage("two.exr", {2.0f, 0.5f, 1.0f});
+  const Light light = Read(kRectangle + kAimed + "texture = \"two.ppm\"\nradiance = 3.0\n");
+  ASSERT_TRUE(light.texture);
+  EXPECT_EQ(light.texture_path, "two.ppm");
+  EXPECT_NEAR(MeanTexel(*light.texture).g, 0.5 * (1.0 + 0.502886), 1e-5);
+  EXPECT_NEAR(Luminance(light.radiance), 3.0, 1e-14);
+  EXPECT_NEAR(light.Flux(), kPi * 2.0 * 3.0 * 0.5 * (1.0 + 0.502886), 1e-4);
+  EXPECT_NEAR(Read(kRectangle + kAimed + "texture = \"two.ppm\"\ncolor = [1.0, 0.5, 0.1]\nflux = 123.0\n").Flux(), 123.0, 1e-11);
+  const Light half = Read(kRectangle + kAimed + "texture = \"two.exr\"\nradiance = 1.0\n");
+  EXPECT_EQ(MeanTexel(*half.texture), glm::dvec3(3.5 / 3.0));
+  const glm::dvec3 left = half.center - 2.0 * half.axis_x, right = half.center + 2.0 * half.axis_x;
+  EXPECT_EQ(TextureAt(*half.texture, TextureCoordinates(half, left, false)).r, 2.0);
+  EXPECT_EQ(TextureAt(*half.texture, TextureCoordinates(half, right, false)).r, 1.0);
+  EXPECT_EQ(TextureAt(*half.texture, TextureCoordinates(half, right, true)).r, 2.0);
+  EXPECT_NEAR(TextureAt(*half.texture, {1.0 / 3.0, 0.7}).r, 1.25, 1e-12);
+  EXPECT_NEAR(TextureCoordinates(half, half.center + 0.25 * half.axis_y, false).y, 0.0, 1e-15);
 }
 
 TEST_F(LightTest, ColorGivesTheHueAndRadianceTheLuminance) {

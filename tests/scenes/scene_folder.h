@@ -1,12 +1,15 @@
 // A folder of its own for each test, gone at its end, and a sound scene to spoil.
 #pragma once
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "scenes/error.h"
 #include "scenes/scene.h"
@@ -27,6 +30,13 @@ class SceneFolder : public ::testing::Test {
   std::filesystem::path Write(const std::filesystem::path& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
+  }
+
+  // One grey row of floats.
+  void WriteImage(const std::filesystem::path& name, const std::vector<float>& row) const {
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name.string());
+    ASSERT_TRUE(output && output->open((folder_ / name).string(), OIIO::ImageSpec(static_cast<int>(row.size()), 1, 1, OIIO::TypeDesc::FLOAT)));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, row.data()) && output->close());
   }
 
   Scene Load(const std::string& text) const { return LoadScene(Write("test.toml", text)); }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "scenes/error.h"
+#include "tests/scenes/scene_folder.h"
 
 namespace arealab {
 namespace {
@@ -229,6 +230,28 @@ TEST(SceneWriter, EveryBuiltInSceneTakesAnEdit) {
       EXPECT_LT(glm::distance(read.lights[i].radiance, after.lights[i].radiance), 1e-5 * glm::length(after.lights[i].radiance)) << file;
     }
   }
+}
+
+TEST_F(SceneFolder, TexturesOfLightsAreKeptAddedAndTakenAway) {
+  Write("a.ppm", "P3 1 1 255  255 128 0\n");
+  const std::string text = kCamera + kMaterial + kSurface + kLight + "texture = \"a.ppm\"\n";
+  const Scene before = Load(text);
+  const auto saved = [&](const Scene& after) {
+    Write("test.toml", text);
+    SaveScene(before, after);
+    return LoadScene(folder_ / "test.toml");
+  };
+  Scene moved = before;
+  moved.lights[0].center.z = 3.0;
+  EXPECT_EQ(saved(moved).lights[0].texture_path, "a.ppm");
+  Scene bare = before;
+  bare.lights[0].texture = nullptr;
+  bare.lights[0].texture_path.clear();
+  EXPECT_FALSE(saved(bare).lights[0].texture);
+  Scene doubled = before;
+  doubled.lights.push_back(before.lights[0]);
+  doubled.lights[1].name = "second";
+  EXPECT_EQ(saved(doubled).lights[1].texture_path, "a.ppm");
 }
 
 }  // namespace
