@@ -27,6 +27,9 @@ class LightDirections {
   static std::optional<LightDirections> From(const glm::dvec3& position, const glm::dvec3& normal,
                                              const Light& light);
 
+  // All directions above the horizon, as dense as their cosine; nothing is beyond them.
+  static LightDirections Sky(const glm::dvec3& normal);
+
   struct Sample {
     glm::dvec3 direction;  // unit, world
     double distance;       // m, to the light's surface
@@ -68,6 +71,7 @@ class LightDirections {
   std::vector<glm::dvec2> corners_;     // of a polygon, in the axes about the centre, counter-clockwise
   std::vector<double> shares_;          // of its area, up to and with each triangle about the first corner
   double area_ = 0.0;                   // m², of a polygon
+  bool sky_ = false;
 };
 
 // Half vectors that the viewer sees, hence reflected directions, of a GGX lobe [Heitz 2018, by the spherical

@@ -225,6 +225,7 @@ class Analysis {
         return {true, Called(lights_[i], i) + " has a coloured texture"};
       }
     }
+    if (scene_.sky && !IsGrey(*scene_.sky)) return {true, "the sky is coloured"};
     return {false, "every light is white"};
   }
 
@@ -246,6 +247,11 @@ class Analysis {
   Verdict Aperture() const {
     if (scene_.aperture) return {true, "the scene asks for visibility, baked into apertures"};
     return {false, "the scene asks for no visibility"};
+  }
+
+  Verdict Sky() const {
+    if (scene_.sky) return {true, "the scene has a sky"};
+    return {false, "the scene has no sky"};
   }
 
   Verdict ManyLights() const {
@@ -366,6 +372,7 @@ constexpr Rule kRules[] = {
     {"material_color", [](Analysis& scene) { return scene.MaterialColor(); }},
     {"aperture", [](Analysis& scene) { return scene.Aperture(); }},
     {"textured", [](Analysis& scene) { return scene.Textured(); }},
+    {"sky", [](Analysis& scene) { return scene.Sky(); }},
     {"many_lights", [](Analysis& scene) { return scene.ManyLights(); }},
 };
 
