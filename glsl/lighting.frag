@@ -10,12 +10,7 @@
 #include "sky"
 #endif
 
-void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
-  Light light = LoadLight(i);
-  if (!Lit(FaceLight(light, surface.position))) return;
-#if EFFECT_SKY
-  light.radiance = BeforeSky(light.radiance);
-#endif
+void AddFacedLight(Light light, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
   Radiance radiance = ShadeLight(surface, light, to_view);
 #if EFFECT_APERTURE
   float visible = Visibility(surface, light);
@@ -29,6 +24,23 @@ void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout ve
 #if EFFECT_SPECULAR
   specular += radiance.specular;
 #endif
+}
+
+void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
+  Light light = LoadLight(i);
+  if (!Lit(FaceLight(light, surface.position))) return;
+#if EFFECT_SKY
+#if EFFECT_TEXTURED
+  // What a textured light hides of the sky is not textured.
+  if (light.image.x != 0.0) {
+    AddFacedLight(light, surface, to_view, diffuse, specular);
+    light.image = vec3(0.0);
+    light.radiance = vec3(0.0);
+  }
+#endif
+  light.radiance = BeforeSky(light.radiance);
+#endif
+  AddFacedLight(light, surface, to_view, diffuse, specular);
 }
 
 void main() {
