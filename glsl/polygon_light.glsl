@@ -32,7 +32,7 @@ vec3 PolygonCorner(Light light, PolygonView view, int i) {
 // The rectangle that the corners reach: what is small against its distance is taken as one of the polygon's area about the centroid,
 // as in polygon.glsl and for its reasons.
 bool IsSmallPolygon(Light light, PolygonView view) {
-  return IsSmallRectangle(view.center, view.axis_x * light.half_size.x, view.axis_y * light.half_size.y);
+  return IsSmallParallelogram(view.center, view.axis_x * light.half_size.x, view.axis_y * light.half_size.y);
 }
 float SmallPolygonShare(Light light) { return light.area / (2.0 * light.products.z); }
 

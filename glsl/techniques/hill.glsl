@@ -192,7 +192,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if EFFECT_TEXTURED
   RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
 #if TEXTURE_VECTOR
-  vec3 vector = ParallelogramVector(view.center, view.half_a, view.half_b).f;
+  vec3 vector = ParallelogramVector(view.center, view.half_a, view.half_b, view.small).f;
 #else
   vec3 vector = vec3(0.0);
 #endif
