@@ -42,9 +42,11 @@ RadianceImage FromHalf(const HalfImage& image);
 // step of at most 2^(bits − 10). NaN and infinity stay what they are.
 void DropBits(HalfImage& image, int bits);
 
-// Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray). Half where the exponent is 0, for the eye:
-// compressed by DWA where all is finite, else without loss; float with exactly the same values at other exponents. Throws InputError where the file cannot be written.
-void WriteExr(const std::filesystem::path& file, const HalfImage& image);
+enum class ExrLoss { kNone, kForTheEye };
+
+// Channels diffuse.R … specular.B (diffuse.Y alone where the lobe is gray). Half where the exponent is 0, for the eye compressed by
+// DWA where all is finite; float with exactly the same values at other exponents. Throws InputError where the file cannot be written.
+void WriteExr(const std::filesystem::path& file, const HalfImage& image, ExrLoss loss = ExrLoss::kNone);
 // As float, unrounded.
 void WriteExr(const std::filesystem::path& file, const RadianceImage& image);
 // Reads either form. Throws InputError where it cannot.

@@ -255,7 +255,7 @@ void WriteImages(const Job& job, int most_bits, const fs::path& root) {
     WriteText(script, EncodePageImage(key, half));
   }
   const fs::path images = root / "images" / job.folder;
-  WriteExr(images / (job.stem + ".exr"), half);
+  WriteExr(images / (job.stem + ".exr"), half, ExrLoss::kForTheEye);
   const std::span<const glm::vec3> emission =
       scene.emission ? std::span<const glm::vec3>(*scene.emission) : std::span<const glm::vec3>();
   WriteThumbnail(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width,

@@ -98,7 +98,7 @@ class Expander {
     EmitHost("#define assert(condition)");
     for (const auto& [name, value] : effects) EmitHost(fmt::format("#define {} {}", name, value));
     // Which answers to assume: none but where the host asks (glsl/lit.glsl, glsl/path.glsl).
-    for (const std::string_view path : {"PATH_LIT", "PATH_ABOVE", "PATH_CROSSING", "PATH_BELOW"}) {
+    for (const std::string_view path : {"PATH_LIT", "PATH_ABOVE", "PATH_CROSSING", "PATH_BELOW", "PATH_FAR", "PATH_NEAR"}) {
       const auto named = [&](const auto& effect) { return effect.first == path; };
       if (std::none_of(effects.begin(), effects.end(), named)) EmitHost(fmt::format("#define {} 0", path));
     }

@@ -6,7 +6,7 @@ shapes = ["rectangle", "polygon"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
-exact = ["lambert_rectangle", "lambert_polygon", "point_limit", "additive"]
+exact = ["lambert_rectangle", "point_limit", "additive"]
 
 [[option]]
 name = "vector"

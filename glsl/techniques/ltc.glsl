@@ -6,7 +6,7 @@ shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "textured"]
-exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_polygon", "lambert_ellipse", "point_limit", "mirror_limit", "additive"]
+exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "point_limit", "mirror_limit", "additive"]
 
 [[option]]
 name = "clip"

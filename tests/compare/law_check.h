@@ -168,6 +168,8 @@ class LawCheck {
   void MeasureForm(const Variant& variant, Brdf brdf, std::vector<LawMeasure>& measures) {
     std::vector<LightShape> shapes;
     for (const LightShape shape : variant.technique->shapes) {
+      // Of these no header states a departure yet: tests/compare/polygon_technique_test.cpp holds them to truth, limits and the rectangle.
+      if (shape == LightShape::kPolygon || shape == LightShape::kEllipse) continue;
       Scene scene;
       scene.brdf = brdf;
       scene.lights.resize(1);

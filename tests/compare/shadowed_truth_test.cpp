@@ -343,8 +343,13 @@ TEST(LightSampling, IntegratesWhatHasAClosedForm) {
       MakeLight(LightShape::kRectangle, {40, 300, 250}, {0, -1, -1}, {0.02, 0.03}),
       MakeLight(LightShape::kRectangle, {0, 1, 0.7}, {0, 1, 0.2}, {0.4, 0.6}),
       MakeLight(LightShape::kDisk, {-1, 0.3, 0.4}, {1, 0.2, -0.6}, glm::dvec2(0.7)),
-      MakeLight(LightShape::kSphere, {1, 0.3, 0.3}, {0, 0, 1}, glm::dvec2(0.6))};
-  lights[3].two_sided = true;  // its back
+      MakeLight(LightShape::kSphere, {1, 0.3, 0.3}, {0, 0, 1}, glm::dvec2(0.6)),
+      MakeLight(LightShape::kEllipse, {-0.6, 0.5, 0.5}, {0.7, -0.2, -0.6}, {0.8, 0.3}),
+      MakeLight(LightShape::kPolygon, {0.4, 1.2, 0.9}, {0.1, -1, -0.4}, {}),
+      MakeLight(LightShape::kPolygon, {0, 1, 0.8}, {0.1, 1, 0.2}, {})};
+  lights[3].two_sided = lights[8].two_sided = true;  // their backs
+  SetCorners(lights[7], {{-0.5, -0.4}, {0.6, -0.3}, {0.3, 0.7}});
+  SetCorners(lights[8], {{0.5, 0.0}, {0.3, 0.5}, {-0.2, 0.6}, {-0.5, 0.1}, {-0.3, -0.4}, {0.1, -0.5}});
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const ShadingPoint point{dvec3(0.0), {0, 0, 1}, glm::normalize(dvec3(0.1, -0.8, 0.6)), 0.5};
     const auto directions = LightDirections::From(point.position, point.normal, lights[l]);

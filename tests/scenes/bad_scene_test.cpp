@@ -321,7 +321,7 @@ std::vector<BadScene> BadScenes() {
       {"EllipseOneRadius", Light(kEllipse + "radii = [1.0] #HERE\nradiance = 1\n"),
        "'radii' in [[light]] 'lamp' has 1 elements; expected an array of 2 numbers"},
       {"EllipseHasNoRadius", Light(kEllipse + "radius = 1.0 #HERE\nradiance = 1\n"),
-       "unknown key 'radius' in [[light]] 'lamp'; expected one of: name, shape, position, color, radiance, flux, luminance, luminous_flux, "
+       "unknown key 'radius' in [[light]] 'lamp'; expected one of: name, shape, position, color, radiance, flux, luminance, luminous_flux, texture, "
        "radii, target, normal, rotation, up, two_sided"},
       {"PolygonCornersMissing",
        kCamera + kMaterial + kSurface + "[[light]] #HERE\n" + kPolygon + "radiance = 1\n",
