@@ -74,8 +74,8 @@ Light PointCase::Light() const {
   return light;
 }
 
-LightIntegrals PointCase::Truth(double tolerance) const {
-  return IntegrateLight({position, normal, to_view, std::max(roughness * roughness, 1e-4)}, Light(),
+LightIntegrals PointCase::Truth(double tolerance, Brdf brdf) const {
+  return IntegrateLight({position, normal, to_view, std::max(roughness * roughness, 1e-4), brdf}, Light(),
                         tolerance);
 }
 
@@ -114,7 +114,7 @@ struct PointShader::Impl {
   const Program& Prepare(const Variant& variant, std::span<const PointCase> all,
                          const PointOptions& options) {
     const ExpandedSource source = Expand(library, options.strict ? "strict_points.frag" : "points.frag",
-                                         variant, EffectsOf(all), options.precision);
+                                         variant, EffectsOf(all), options.precision, options.brdf);
     std::unique_ptr<Program>& program = programs[source.text];
     if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
     for (const Knob& knob : variant.technique->knobs) {
@@ -125,7 +125,7 @@ struct PointShader::Impl {
     program->Set("as_lighting_pass", static_cast<int>(options.as_lighting_pass));
     GLuint unit = kFirstTableUnit;
     for (const Table& table : variant.technique->tables) {
-      gl.BindTextureUnit(unit, LoadTable(TableFile(variant, table, Brdf::kGgx), options.half_tables));
+      gl.BindTextureUnit(unit, LoadTable(TableFile(variant, table, options.brdf), options.half_tables));
       program->Set("table_" + table.name, static_cast<int>(unit++));
     }
     return *program;

@@ -18,7 +18,7 @@
 
 namespace arealab {
 
-// White albedo, reflectance f0 at normal incidence and the light's radiance the same in every channel; GGX.
+// White albedo, reflectance f0 at normal incidence and the light's radiance the same in every channel.
 struct PointCase {
   LightShape shape = LightShape::kRectangle;
   glm::dvec3 position{0.0}, normal{0.0, 0.0, 1.0}, to_view{0.0, 0.0, 1.0};
@@ -30,7 +30,7 @@ struct PointCase {
 
   PointCase Rounded() const;  // as the GL gets it: every number the nearest float
   arealab::Light Light() const;
-  LightIntegrals Truth(double tolerance = 1e-4) const;  // for radiance 1
+  LightIntegrals Truth(double tolerance = 1e-4, Brdf brdf = Brdf::kGgx) const;  // for radiance 1
 };
 
 struct Shaded {
@@ -44,6 +44,7 @@ struct PointOptions {
       false;  // black where the lighting pass shades nothing: behind the light, away from the viewer
   bool strict = false;       // min, max and clamp pass a NaN on (glsl/strict_order.glsl); in float alone
   bool half_tables = false;  // the tables' texels rounded to half floats
+  Brdf brdf = Brdf::kGgx;
 };
 
 class PointShader {

@@ -121,7 +121,7 @@ class Expander {
     if (name == "platform") {
       return precision_ == Precision::kDouble ? "platform_double.glsl" : "platform_float.glsl";
     }
-    if (name == "brdf") return fmt::format("brdf/{}.glsl", Name(brdf_));
+    if (name == "brdf" || name == "importance_cone") return fmt::format("{}/{}.glsl", name, Name(brdf_));
     if (!variant_.technique) return name;
     if (name == "visibility") {
       const std::vector<std::string>& taken = variant_.technique->effects;

@@ -1,22 +1,21 @@
 #pragma once
-// The cone of directions about the mirror direction that matter for a GGX lobe [Drobot 2014, §1.3.4], and its footprint
-// on a light. Dual: also compiles as C++. A cone is held by its versine (spherical_cap.glsl).
+// The cone of directions about the mirror direction that matter for a lobe [Drobot 2014, §1.3.4], and its footprint on a
+// light. Dual: also compiles as C++. A cone is held by its versine (spherical_cap.glsl).
 //
-// With half vectors at θ_h from the normal, D(θ_h)/D(0) = σ gives sin²θ_h = (σ^−½ − 1) α²/(1 − α²); the light's direction
-// turns twice as far, and the versine of 2θ_h is 2 sin²θ_h.
+// The scene's BRDF says how wide it is in a file glsl/importance_cone/NAME.glsl, `#include "importance_cone"`:
+//   float ThresholdConeVersine(float alpha)  where the lobe falls to 1/e of its peak, along the plane of incidence
+//   float WholeConeVersine(float alpha)      as wide as conserves the lobe's energy, at normal incidence
+//   float ConeAcross(float n_dot_v)          width across the plane of incidence over that along it
+// With half vectors at θ_h from the normal the light's direction turns twice as far, and the versine of 2θ_h is 2 sin²θ_h.
 #include "specular_lobe.glsl"
 #include "spherical_cap.glsl"
 
-// The threshold that makes Phong's cone of eq. 1.18 (half angle √(2/(g + 2))) is σ = 1/e; √e − 1 = 0.6487.
-float ThresholdConeVersine(float alpha) {
-  float alpha2 = alpha * alpha;
-  return min(2.0 * 0.6487212707 * alpha2 / max(1.0 - alpha2, 1e-6), 2.0);
-}
+#if !AREALAB_DUAL  // C++ includes one of glsl/importance_cone/ before this file
+#include "importance_cone"
+#endif
 
-// Ours: the versine that conserves energy. The lobe fills 4 n·v dω_h, so a cone in which it is as high as at the mirror
-// direction has the solid angle 4π α² n·v; its product with the peak D(0)·G2/(4 n·v) is G2, what a mirror tends to.
-// At n·v = 1 and small alpha this is the threshold σ = ¼.
-float EnergyConeVersine(float alpha, float n_dot_v) { return min(2.0 * alpha * alpha * n_dot_v, 2.0); }
+// Ours: the versine that conserves energy at every view angle: a round cone as large as the lobe is.
+float EnergyConeVersine(float alpha, float n_dot_v) { return min(WholeConeVersine(alpha) * ConeAcross(n_dot_v), 2.0); }
 
 // The cone's trace on the light's plane, taken as a disk [Drobot 2014, §1.3.4].
 struct Footprint {

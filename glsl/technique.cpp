@@ -32,12 +32,10 @@ std::vector<std::string> BrdfNames() {
   for (const Brdf brdf : kBrdfs) names.emplace_back(Name(brdf));
   return names;
 }
-// What a technique may claim to be exact in: the claims that a test can check against the truth.
-const std::vector<std::string> kClaims{"lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle",
-                                       "ggx_disk",          "ggx_sphere",   "point_limit"};
+constexpr std::string_view kHeldLaws[] = {"scale", "rotation", "radiance"};  // without being claimed
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
-                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "visibility"};
+                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "importance_cone", "visibility"};
 
 std::vector<std::string> ShapeNames(const std::vector<LightShape>& shapes) {
   std::vector<std::string> names;
@@ -74,7 +72,7 @@ class HeaderReader {
     }
     toml::table root = Parse(CutHeader(text));
     CheckKeys(root, {"summary", "citation", "author_note", "shapes", "lobes", "brdfs", "effects", "exact",
-                     "yardstick", "option", "knob", "tables", "published", "ideal"});
+                     "departs", "yardstick", "option", "knob", "tables", "published", "ideal"});
     technique.summary = Line(root, "summary", 1);
     technique.citation = Line(root, "citation", 1);
     technique.author_note = Line(root, "author_note", 1);
@@ -85,6 +83,7 @@ class HeaderReader {
     for (const toml::table* table : Tables(root, "knob")) ReadKnob(*table, technique);
     ReadTables(root, technique);
     ReadForms(root, technique);
+    for (const toml::table* table : Tables(root, "departs")) ReadDeparture(*table, technique);
     return technique;
   }
 
@@ -229,7 +228,9 @@ class HeaderReader {
     technique.specular = std::find(lobes.begin(), lobes.end(), "specular") != lobes.end();
     technique.brdfs = NeededList(root, "brdfs", BrdfNames());
     technique.effects = NameList(root, "effects", EffectNames());
-    technique.exact = NameList(root, "exact", kClaims);
+    std::vector<std::string> claimable = Laws();
+    std::erase_if(claimable, [](const std::string& law) { return std::ranges::count(kHeldLaws, law) > 0; });
+    technique.exact = NameList(root, "exact", claimable);
     if (const toml::node* yardstick = root.get("yardstick")) {
       if (!yardstick->is_boolean()) Fail(LineOf(*yardstick), "yardstick is neither true nor false", "one of them");
       technique.yardstick = yardstick->as_boolean()->get();
@@ -359,6 +360,44 @@ class HeaderReader {
     }
   }
 
+  void ReadDeparture(const toml::table& table, Technique& technique) const {
+    const int line = LineOf(table);
+    CheckKeys(table, {"law", "lobe", "when", "error", "why"});
+    Departure departure;
+    departure.law = OneOf(Get(table, "law", line), "law", Laws());
+    if (const toml::node* lobe = table.get("lobe")) departure.lobe = OneOf(*lobe, "lobe", kLobes);
+    departure.error = Number(table, "error", line);
+    if (departure.error <= 0.0) Fail(LineOf(*table.get("error")), "the error is not above 0", "a relative RMSE");
+    departure.why = Line(table, "why", line);
+    if (const toml::table* when = Section(table, "when")) {
+      for (const auto& [key, node] : *when) departure.when[std::string(key.str())] = Covered(key.str(), node, technique);
+    }
+    technique.departures.push_back(std::move(departure));
+  }
+
+  std::string OneOf(const toml::node& node, std::string_view what, const std::vector<std::string>& known) const {
+    std::string name = ChoiceName(node, what);
+    if (std::ranges::count(known, name) == 0)
+      Fail(LineOf(node), fmt::format("unknown {} \"{}\"", what, name), ExpectedNames(name, known));
+    return name;
+  }
+
+  // "halfway", or ["halfway", "plane"]: of an option, of the technique's shapes or of its BRDFs.
+  std::vector<std::string> Covered(std::string_view what, const toml::node& node, const Technique& technique) const {
+    std::vector<std::string> known;
+    if (what == "shape") {
+      known = ShapeNames(technique.shapes);
+    } else if (what == "brdf") {
+      known = technique.brdfs;
+    } else {
+      for (const Choice& choice : FindOption(technique, what, LineOf(node)).choices) known.push_back(choice.name);
+    }
+    if (!node.is_array()) return {OneOf(node, what, known)};
+    std::vector<std::string> covered;
+    for (const toml::node& item : *node.as_array()) covered.push_back(OneOf(item, what, known));
+    return covered;
+  }
+
   void ReadKnob(const toml::table& table, Technique& technique) const {
     const int line = LineOf(table);
     CheckKeys(table, {"name", "label", "unit", "initial", "min", "max"});
@@ -456,6 +495,16 @@ class HeaderReader {
 };
 
 }  // namespace
+
+std::vector<std::string> Laws() {
+  std::vector<std::string> laws;
+  for (const char* lobe : {"lambert", "specular"}) {
+    for (const LightShape shape : kShapes) laws.push_back(fmt::format("{}_{}", lobe, Name(shape)));
+  }
+  laws.insert(laws.end(), {"point_limit", "mirror_limit", "additive"});
+  laws.insert(laws.end(), std::begin(kHeldLaws), std::end(kHeldLaws));
+  return laws;
+}
 
 std::vector<Technique> LoadTechniques(const ShaderLibrary& library) {
   constexpr std::string_view kFolder = "techniques/";

@@ -41,6 +41,16 @@ struct Table {
   std::string file;
 };
 
+// Where a technique does not keep a law that it else claims, or that each must keep or depart from, and by how much.
+struct Departure {
+  std::string law;   // one of Laws()
+  std::string lobe;  // "diffuse", "specular"; empty: both
+  // What it covers: option → choices; under "shape" and "brdf" of the light and the scene; what is not named is covered.
+  std::map<std::string, std::vector<std::string>> when;
+  double error = 0.0;  // relative RMSE over the law's own cases (tests/compare/laws_test.cpp), the largest of what it covers
+  std::string why;     // one line
+};
+
 struct Technique {
   std::string name;         // the file's stem: "ltc"
   std::string summary;      // one line
@@ -52,8 +62,8 @@ struct Technique {
   bool yardstick = false;  // what a user would otherwise do: compared only where asked for
   std::vector<std::string> brdfs;    // "ggx"
   std::vector<std::string> effects;  // EFFECT_* it takes: "two_sided", "fresnel", …
-  std::vector<std::string>
-      exact;  // what it is exact in: "lambert_rectangle", "lambert_sphere", "point_limit", …
+  std::vector<std::string> exact;  // the laws it keeps: "lambert_rectangle", "point_limit", …; departures excepted
+  std::vector<Departure> departures;
   std::vector<Option> options;
   std::vector<Knob> knobs;
   std::vector<Table> tables;
@@ -62,6 +72,13 @@ struct Technique {
   // option → choice that is the technique's own mathematics, with no shortcut of computation; what is not in it stays.
   std::map<std::string, std::string> ideal;
 };
+
+// Every law by name. Those that a header may claim: "lambert_SHAPE" and "specular_SHAPE" of each shape, equal to the truth of
+// any BRDF it takes. Those that each technique claims or departs from: "point_limit", a light that shrinks tends to the
+// truth of a point's; "mirror_limit", the specular lobe tends to the truth as roughness tends to 0; "additive", two halves
+// of a light are the whole. Those that hold unless it departs: "scale", lengths a thousand times as large change nothing;
+// "rotation", nor does turning everything; "radiance", twice the radiance is twice the picture, to the bit.
+std::vector<std::string> Laws();
 
 // All techniques of the library, sorted by name. A wrong header throws InputError with file and line.
 std::vector<Technique> LoadTechniques(const ShaderLibrary& library);

@@ -1,12 +1,12 @@
 /*---
 summary = "One representative point for the diffuse lobe, one at the middle of the light's part in the lobe's cone for the specular"
 citation = "Drobot 2014"
-author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with the light's solid angle, as Lagarde & de Rousiers 2014 read it too, because only so does his stated error come out (eq. 1.16 by the word, its dA the whole light's, is extent=area and several times too bright near a light); the shipped point=halfway brought onto the light, without which a small light's place would not matter; cone=threshold, his cone's rule carried to GGX; his sphere's diffuse in closed form. Ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, no form factor above 1, no specular solid angle above the cone's own, cone=energy. He shipped rectangles with a Phong lobe only, because of artefacts with Blinn-Phong"
+author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with the light's solid angle, as Lagarde & de Rousiers 2014 read it too, because only so does his stated error come out (eq. 1.16 by the word, its dA the whole light's, is extent=area and several times too bright near a light); the shipped point=halfway brought onto the light, without which a small light's place would not matter; cone=threshold, his cone's rule, by eq. 1.18 for Phong and Blinn-Phong, at the same 1/e for the others, which he names without a formula; his sphere's diffuse in closed form. Ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, no form factor above 1, no specular solid angle above the cone's own, cone=energy. point=plane is his pseudo code by the word. He shipped rectangles with a Phong lobe only, because of artefacts with Blinn-Phong; footprint=elongated is what he proposes for them (§1.6), its sides derived by us"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
-exact = ["lambert_sphere"]
+exact = ["lambert_sphere", "point_limit", "mirror_limit"]
 
 [[option]]
 name = "point"
@@ -14,6 +14,7 @@ summary = "which point stands for the diffuse light"
 choices = [
   ["closest", "between the points of the light closest to both maxima (his accurate form, stated error 0.05)"],
   ["halfway", "between both maxima on the light's plane, then the closest point of the light (his shipped form, stated error 0.15)"],
+  ["plane", "between both maxima on the light's plane, on the light or not (his pseudo code by the word)"],
 ]
 
 [[option]]
@@ -32,12 +33,52 @@ choices = [
   ["threshold", "where the lobe falls to 1/e of its peak (eq. 1.18's threshold, for GGX)"],
 ]
 
+[[option]]
+name = "footprint"
+summary = "the cone's section with the light's plane"
+choices = [
+  ["disk", "a disk; over a rectangle the square of its area (his)"],
+  ["elongated", "as long and wide as the lobe, clipped by the rectangle's sides, its centre of area (his further research)", { shape = "rectangle" }],
+]
+
 [published]
 point = "halfway"
 extent = "solid_angle"
 cone = "threshold"
+
+[[departs]]
+law = "point_limit"
+lobe = "diffuse"
+when = { point = "plane" }
+error = 0.32
+why = "where a light stands beside the point does not matter"
+
+[[departs]]
+law = "point_limit"
+lobe = "specular"
+error = 0.93
+why = "a plateau over the importance cone, dark beside it"
+
+[[departs]]
+law = "mirror_limit"
+when = { cone = "threshold" }
+error = 0.89
+why = "a cone to 1/e holds 0.65 of the lobe of a GGX mirror, and too much of it at grazing view"
+
+[[departs]]
+law = "additive"
+lobe = "diffuse"
+error = 0.16
+why = "each half has its own point"
+
+[[departs]]
+law = "additive"
+lobe = "specular"
+error = 0.35
+why = "each half has its own point and overlap"
 ---*/
 #include "brdf.glsl"
+#include "elongated_footprint.glsl"
 #include "importance_cone.glsl"
 #include "representative_point.glsl"
 #include "solid_angle.glsl"
@@ -107,8 +148,10 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if POINT_CLOSEST
       diffuse_point = HalfwayHit(point, ClosestOnDisk(foot + normal_hit, radius) - foot,
                                  ClosestOnDisk(foot + nearest_hit, radius) - foot);
-#else
+#elif POINT_HALFWAY
       diffuse_point = ClosestOnDisk(halfway_hit, radius);
+#else
+      diffuse_point = halfway_hit;
 #endif
       part = FootprintOnDisk(footprint, radius);
 #if EXTENT_SOLID_ANGLE
@@ -124,10 +167,16 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if POINT_CLOSEST
       diffuse_point = HalfwayHit(point, ClosestOnRectangle(foot + normal_hit, light.half_size) - foot,
                                  ClosestOnRectangle(foot + nearest_hit, light.half_size) - foot);
-#else
+#elif POINT_HALFWAY
       diffuse_point = ClosestOnRectangle(halfway_hit, light.half_size);
+#else
+      diffuse_point = halfway_hit;
 #endif
+#if FOOTPRINT_DISK
       part = FootprintOnRectangle(footprint, light.half_size);
+#else
+      part = ElongatedFootprintOnRectangle(footprint, point, local.normal, local_mirror, ConeAcross(n_dot_v), light.half_size);
+#endif
 #if EXTENT_SOLID_ANGLE
       solid_angle = RectangleSolidAngle(point, light.half_size);
 #endif

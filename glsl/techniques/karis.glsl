@@ -35,6 +35,23 @@ max = 1000.0
 [published]
 widening = "half"
 falloff = "windowed"
+
+[[departs]]
+law = "point_limit"
+when = { falloff = "windowed" }
+error = 0.0053
+why = "the window, at lights 1 to 4 m away"
+
+[[departs]]
+law = "scale"
+when = { falloff = "windowed" }
+error = 1.0
+why = "the window and his square centimetre are lengths"
+
+[[departs]]
+law = "mirror_limit"
+error = 3.0
+why = "a mirror shows the radiance over n.v, with widening=third 9/4 of that"
 ---*/
 #include "specular_lobe.glsl"
 #include "lit.glsl"

@@ -6,7 +6,7 @@ shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
-exact = ["lambert_rectangle", "point_limit"]
+exact = ["lambert_rectangle", "point_limit", "additive"]
 
 [[option]]
 name = "vector"
@@ -42,6 +42,36 @@ edge = "acos"
 [ideal]
 clip = "stream"
 edge = "acos"
+
+[[departs]]
+law = "lambert_rectangle"
+when = { vector = "unit" }
+error = 9.9
+why = "the direction alone: form factor and fall-off are lost"
+
+[[departs]]
+law = "point_limit"
+when = { vector = "unit" }
+error = 21000000.0
+why = "as bright from a light of no size"
+
+[[departs]]
+law = "additive"
+lobe = "diffuse"
+when = { vector = "unit" }
+error = 0.97
+why = "each half is as bright as the whole"
+
+[[departs]]
+law = "additive"
+lobe = "specular"
+error = 1.0
+why = "each half has its own direction"
+
+[[departs]]
+law = "mirror_limit"
+error = 1.0
+why = "the highlight is a point's: dark but along the vector, brighter there without bound"
 ---*/
 #include "ltc.glsl"
 #include "edge"

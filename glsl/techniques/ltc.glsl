@@ -6,7 +6,7 @@ shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel"]
-exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "point_limit"]
+exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "point_limit", "mirror_limit", "additive"]
 
 [[option]]
 name = "clip"
@@ -114,6 +114,50 @@ clip = "stream"
 edge = "acos"
 disk = "exact"
 norm = "none"
+
+[[departs]]
+law = "lambert_rectangle"
+when = { clip = "none" }
+error = 0.045
+why = "what lies below the horizon counts"
+
+[[departs]]
+law = "lambert_rectangle"
+when = { edge = "quadratic" }
+error = 0.0027
+why = "the edge fit"
+
+[[departs]]
+law = "lambert_disk"
+when = { disk = "proxy" }
+error = 0.019
+why = "a proxy sphere where the horizon crosses the disk"
+
+[[departs]]
+law = "point_limit"
+lobe = "specular"
+error = 0.49
+why = "the fitted lobe"
+
+[[departs]]
+law = "additive"
+when = { clip = "none" }
+error = 0.018
+why = "the part below the horizon is cut off for each half as a whole"
+
+[[departs]]
+law = "additive"
+lobe = "diffuse"
+when = { edge = "quadratic" }
+error = 0.0032
+why = "the edge fit"
+
+[[departs]]
+law = "additive"
+lobe = "specular"
+when = { fresnel = "direction" }
+error = 0.0019
+why = "each half has its own direction for the Fresnel term"
 ---*/
 #include "brdf.glsl"
 #include "ltc_tables.glsl"

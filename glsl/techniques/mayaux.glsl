@@ -6,6 +6,7 @@ shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
 effects = ["two_sided", "fresnel", "many_lights"]
+exact = ["point_limit", "mirror_limit"]
 
 [[option]]
 name = "segment"
@@ -35,6 +36,31 @@ choices = [
 segment = "printed"
 average = "center"
 coupling = "none"
+
+[[departs]]
+law = "point_limit"
+lobe = "diffuse"
+when = { coupling = "fresnel" }
+error = 0.68
+why = "the diffuse lobe loses what Fresnel reflects"
+
+[[departs]]
+law = "point_limit"
+lobe = "specular"
+error = 0.99
+why = "a plateau over the glossiness cone"
+
+[[departs]]
+law = "additive"
+lobe = "diffuse"
+error = 0.16
+why = "each half is clipped to a rectangle of its own"
+
+[[departs]]
+law = "additive"
+lobe = "specular"
+error = 0.24
+why = "each half fades by itself at its border"
 ---*/
 #include "brdf.glsl"
 #include "edge/mirrored.glsl"

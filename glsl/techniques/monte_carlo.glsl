@@ -25,6 +25,26 @@ unit = ""
 initial = 0.0
 min = 0.0
 max = 1000000.0
+
+[[departs]]
+law = "point_limit"
+error = 1.0
+why = "noise: with samples=1 the one sample of the lobe misses a small light"
+
+[[departs]]
+law = "mirror_limit"
+error = 1.0
+why = "noise"
+
+[[departs]]
+law = "additive"
+error = 0.12
+why = "noise: each half has its own samples"
+
+[[departs]]
+law = "rotation"
+error = 0.43
+why = "noise: a sphere is sampled in a frame that does not turn with the scene"
 ---*/
 #include "ggx_sampling.glsl"
 #include "light_sampling.glsl"

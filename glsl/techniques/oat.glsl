@@ -6,7 +6,7 @@ shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
 effects = ["two_sided", "fresnel", "many_lights", "aperture"]
-exact = ["lambert_sphere"]
+exact = ["lambert_sphere", "point_limit"]
 
 [[option]]
 name = "overlap"
@@ -27,6 +27,48 @@ choices = [
 [published]
 overlap = "smoothstep"
 centroid = "average"
+
+[[departs]]
+law = "lambert_sphere"
+when = { centroid = "average" }
+error = 0.57
+why = "the cosine at the average of both axes"
+
+[[departs]]
+law = "lambert_sphere"
+when = { overlap = "smoothstep" }
+error = 0.57
+why = "the overlap by a smoothstep; with centroid=average, its"
+
+[[departs]]
+law = "point_limit"
+lobe = "diffuse"
+when = { centroid = "average" }
+error = 0.47
+why = "the cosine at the average of both axes"
+
+[[departs]]
+law = "point_limit"
+lobe = "specular"
+error = 0.94
+why = "a plateau over the lobe's cone"
+
+[[departs]]
+law = "mirror_limit"
+error = 0.17
+why = "a cap has not the light's outline; a sphere's cap has"
+
+[[departs]]
+law = "additive"
+lobe = "diffuse"
+error = 0.23
+why = "each half is its own cap"
+
+[[departs]]
+law = "additive"
+lobe = "specular"
+error = 0.37
+why = "each half is its own cap"
 ---*/
 #include "brdf.glsl"
 #include "importance_cone.glsl"

@@ -7,6 +7,16 @@ lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
 exact = ["point_limit"]
+
+[[departs]]
+law = "mirror_limit"
+error = 1.0
+why = "a point has no outline: dark but where the mirror ray meets it, brighter there without bound"
+
+[[departs]]
+law = "additive"
+error = 0.4
+why = "each half is taken at its own centre"
 ---*/
 #include "lit.glsl"
 #include "specular_lobe.glsl"

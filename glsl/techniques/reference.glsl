@@ -6,7 +6,7 @@ shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
-exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "ggx_rectangle", "ggx_disk", "ggx_sphere", "point_limit"]
+exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "specular_rectangle", "specular_disk", "specular_sphere", "point_limit", "mirror_limit", "additive"]
 
 [[option]]
 name = "level"
@@ -15,6 +15,30 @@ choices = [
   ["normal", "8 and 6: about 1e-3 for GGX, up to 4e-2 for a sharp lobe with a steeper tail"],
   ["dense", "16 and 12: what float can hold, 1e-3 for a sharp lobe with a steeper tail"],
 ]
+
+[[departs]]
+law = "mirror_limit"
+when = { brdf = ["beckmann", "blinn_phong", "ward", "phong"] }
+error = 0.12
+why = "too few nodes for a steep tail at the light's edge"
+
+[[departs]]
+law = "specular_rectangle"
+when = { brdf = "phong" }
+error = 0.003
+why = "too few nodes for a step at the lobe's end"
+
+[[departs]]
+law = "specular_sphere"
+when = { brdf = "phong" }
+error = 0.0023
+why = "too few nodes for a step at the lobe's end"
+
+[[departs]]
+law = "additive"
+when = { brdf = "phong" }
+error = 0.002
+why = "too few nodes for a step at the lobe's end"
 ---*/
 #include "gauss_nodes.glsl"
 #include "outline.glsl"

@@ -96,6 +96,10 @@ class TechniquePoints {
     return variants;
   }
 
+  std::vector<Shaded> Shade(const Variant& variant, const std::vector<PointCase>& cases, const PointOptions& options) {
+    return shader_.Shade(variant, cases, options);
+  }
+
   std::vector<Shaded> Shade(const std::string& variant_name, const std::vector<PointCase>& cases,
                             Precision precision = Precision::kFloat,
                             const std::map<std::string, double>& knobs = {}) {

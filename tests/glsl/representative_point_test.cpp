@@ -3,14 +3,30 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
+
+#include "scenes/scene.h"
 
 #define EFFECT_FRESNEL 1
 #include "glsl/dual_begin.h"
 #include "glsl/brdf.glsl"
+#include "glsl/brdf_choices.h"
 #include "glsl/brdf/ggx.glsl"
+#include "glsl/spherical_cap.glsl"
+#include "glsl/importance_cone/ggx.glsl"
 #include "glsl/importance_cone.glsl"
+#include "glsl/elongated_footprint.glsl"
 #include "glsl/representative_point.glsl"
 #include "glsl/specular_albedo.glsl"
+namespace cone_beckmann {
+#include "glsl/importance_cone/beckmann.glsl"
+}
+namespace cone_blinn_phong {
+#include "glsl/importance_cone/blinn_phong.glsl"
+}
+namespace cone_phong {
+#include "glsl/importance_cone/phong.glsl"
+}
 #include "glsl/dual_end.h"
 
 namespace arealab {
@@ -90,6 +106,113 @@ TEST(ImportanceCone, EnergyOfTheCones) {
     EXPECT_NEAR(peak * 2.0 * kPi * dual::EnergyConeVersine(alpha, n_dot_v), masking, 1e-12);
     EXPECT_NEAR(masking, 1.0, 0.01);
     EXPECT_NEAR(peak * 2.0 * kPi * dual::ThresholdConeVersine(alpha) * n_dot_v, 0.6487 * masking, 1e-3);
+  }
+}
+
+// The same for every BRDF: the peak times the whole cone is what the BRDF's mirror tends to, at every view angle; and Drobot's half angle √(2/(m + 2)),
+// which makes Phong's peak times its cone 1.
+TEST(ImportanceCone, WholeConesOfTheOtherBrdfs) {
+  const double alpha = 0.02;
+  for (double n_dot_v : {1.0, 0.7, 0.4}) {
+    const auto peak = [&](Brdf brdf) {
+      return dual::GgxDensity(1.0, alpha) * dual::BrdfOverGgx(brdf, n_dot_v, n_dot_v, n_dot_v, 0.0, alpha) * n_dot_v;
+    };
+    const double facets = 2.0 * kPi * dual::cone_beckmann::WholeConeVersine(alpha) * dual::cone_beckmann::ConeAcross(n_dot_v);
+    EXPECT_NEAR(peak(Brdf::kBeckmann) * facets, 1.0, 0.01);
+    EXPECT_NEAR(peak(Brdf::kWard) * facets, 1.0, 1e-9);
+    EXPECT_NEAR(peak(Brdf::kGgxSeparable) * 2.0 * kPi * dual::EnergyConeVersine(alpha, n_dot_v), 1.0, 0.01);
+    EXPECT_NEAR(peak(Brdf::kBlinnPhong) * 2.0 * kPi * dual::cone_blinn_phong::WholeConeVersine(alpha) * dual::cone_blinn_phong::ConeAcross(n_dot_v),
+                n_dot_v * n_dot_v, 1e-9);
+    EXPECT_NEAR(peak(Brdf::kPhong) * 2.0 * kPi * dual::cone_phong::WholeConeVersine(alpha), n_dot_v, 1e-9);
+    EXPECT_NEAR(peak(Brdf::kPhong) * 2.0 * kPi * dual::cone_phong::ThresholdConeVersine(alpha), n_dot_v, 1e-3);
+  }
+}
+
+// Where the thresholds lie: the lobes have fallen to 1/e but for what their comments leave out, an alpha squared.
+TEST(ImportanceCone, ThresholdsOfTheOtherBrdfs) {
+  for (double alpha : {1e-3, 0.01, 0.05}) {
+    const auto half = [&](double versine) { return 0.5 * dual::AngleFromVersine(versine); };
+    const double phong = 2.0 * half(dual::cone_phong::ThresholdConeVersine(alpha));
+    EXPECT_NEAR(std::pow(std::cos(phong), 0.5 / (alpha * alpha)), std::exp(-1.0), 4.0 * alpha * alpha);
+    EXPECT_NEAR(phong, std::sqrt(2.0 / (0.5 / (alpha * alpha) + 2.0)), 1e-9);
+    const double blinn = half(dual::cone_blinn_phong::ThresholdConeVersine(alpha));
+    EXPECT_NEAR(std::pow(std::cos(blinn), 2.0 / (alpha * alpha) - 2.0), std::exp(-1.0), 4.0 * alpha * alpha);
+    const double slope = std::tan(half(dual::cone_beckmann::ThresholdConeVersine(alpha)));
+    EXPECT_NEAR(slope, alpha, 1e-9);
+  }
+}
+
+struct Outlined {
+  double area = 0.0;
+  glm::dvec2 center{0.0};
+};
+
+// Of a convex polygon clipped side by side against a rectangle about the origin [Sutherland & Hodgman 1974].
+Outlined ClippedBySides(std::vector<glm::dvec2> polygon, const glm::dvec2& half) {
+  for (const auto& [normal, offset] : {std::pair(glm::dvec2(1, 0), half.x), std::pair(glm::dvec2(-1, 0), half.x),
+                                       std::pair(glm::dvec2(0, 1), half.y), std::pair(glm::dvec2(0, -1), half.y)}) {
+    std::vector<glm::dvec2> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const glm::dvec2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+      const double hp = offset - glm::dot(normal, p), hq = offset - glm::dot(normal, q);
+      if (hp >= 0.0) kept.push_back(p);
+      if (hp * hq < 0.0) kept.push_back(p + (q - p) * (hp / (hp - hq)));
+    }
+    polygon = kept;
+  }
+  Outlined result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+    const double cross = p.x * q.y - p.y * q.x;
+    result.area += 0.5 * cross;
+    result.center += (p + q) * (cross / 6.0);
+  }
+  if (result.area != 0.0) result.center /= result.area;
+  result.area = std::abs(result.area);
+  return result;
+}
+
+TEST(ElongatedFootprint, ClipsAsSidesOneByOneDo) {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int crossing = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const glm::dvec2 half(0.5 + 0.4 * uniform(engine), 0.5 + 0.4 * uniform(engine));
+    const glm::dvec2 center(uniform(engine) * 1.5, uniform(engine) * 1.5);
+    glm::dvec2 a(uniform(engine), uniform(engine)), b(uniform(engine), uniform(engine));
+    if (i % 5 == 0) a.y = b.x = 0.0;  // sides along the window's
+    if (i % 7 == 0) a *= 0.05;
+    const Outlined expected = ClippedBySides({center + a + b, center - a + b, center - a - b, center + a - b}, half);
+    const dual::LitPart part = dual::ParallelogramOnRectangle(center, a, b, half);
+    ASSERT_NEAR(part.area, expected.area, 1e-12) << i;
+    const glm::dvec2 at = center + part.shift;
+    ASSERT_LE(std::abs(at.x), half.x + 1e-12) << i;
+    ASSERT_LE(std::abs(at.y), half.y + 1e-12) << i;
+    if (expected.area < 1e-6) continue;
+    ASSERT_LT(glm::length(at - expected.center), 1e-8) << i;
+    if (expected.area < 0.99 * 4.0 * std::abs(a.x * b.y - a.y * b.x)) ++crossing;
+  }
+  EXPECT_GT(crossing, 5000);
+}
+
+// Its area is the round footprint's; over a large light it is centred where the mirror ray meets it; as long against its width as
+// the lobe's, 1/(n·v), along the plane of incidence.
+TEST(ElongatedFootprint, IsAsLongAsTheLobe) {
+  const glm::dvec3 point(0.2, -0.1, 1.5);
+  for (double n_dot_v : {1.0, 0.8, 0.5}) {
+    // The mirror direction is the plane's normal, the surface's normal turned from it by the view's angle.
+    const glm::dvec3 mirror(0.0, 0.0, -1.0), normal(std::sqrt(1.0 - n_dot_v * n_dot_v), 0.0, -n_dot_v);
+    const dual::Footprint footprint = dual::ConeFootprint(point, mirror, 1e-4, true);
+    const auto area = [&](const glm::dvec2& half) {
+      return dual::ElongatedFootprintOnRectangle({glm::dvec2(0.0), footprint.offset, footprint.radius}, point, normal, mirror, n_dot_v, half).area;
+    };
+    const double whole = area({1.0, 1.0});
+    EXPECT_NEAR(whole / (kPi * footprint.radius * footprint.radius), 1.0, 1e-12);
+    // Strips through the middle: as long as the footprint, in whole times the strip's width.
+    const double strip = 1e-6, length_x = area({1.0, strip}) / (2.0 * strip), length_y = area({strip, 1.0}) / (2.0 * strip);
+    if (n_dot_v < 1.0) {
+      EXPECT_NEAR(length_y / length_x, n_dot_v, 1e-9);
+    }
   }
 }
 

@@ -125,6 +125,28 @@ TEST(Technique, HeaderIsRead) {
   EXPECT_EQ(technique.published, (std::map<std::string, std::string>{{"way", "down"}, {"again", "no"}}));
 }
 
+TEST(Technique, DeparturesAreRead) {
+  const std::string departs = "[[departs]]\nlaw = \"point_limit\"\nlobe = \"diffuse\"\n"
+                              "when = { way = [\"up\", \"down\"], shape = \"sphere\" }\nerror = 0.25\nwhy = \"coarse\"\n---*/";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    return Replaced(kHeader, "---*/", Replaced(departs, from, to));
+  };
+  const Technique technique = Load(with("", ""));
+  ASSERT_EQ(technique.departures.size(), 1u);
+  const Departure& departure = technique.departures[0];
+  EXPECT_EQ(departure.law, "point_limit");
+  EXPECT_EQ(departure.lobe, "diffuse");
+  EXPECT_EQ(departure.when, (std::map<std::string, std::vector<std::string>>{{"way", {"up", "down"}}, {"shape", {"sphere"}}}));
+  EXPECT_EQ(departure.error, 0.25);
+  EXPECT_EQ(departure.why, "coarse");
+  EXPECT_THAT(ErrorOf(with("point_limit", "point")), testing::HasSubstr("unknown law \"point\"; expected "));
+  EXPECT_THAT(ErrorOf(with("\"down\"", "\"aside\"")), testing::HasSubstr("unknown way \"aside\"; expected "));
+  EXPECT_THAT(ErrorOf(with("\"sphere\"", "\"disk\"")), testing::HasSubstr("unknown shape \"disk\"; expected "));
+  EXPECT_THAT(ErrorOf(with("way =", "weigh =")), testing::HasSubstr("unknown option \"weigh\""));
+  EXPECT_THAT(ErrorOf(with("0.25", "0")), testing::HasSubstr("the error is not above 0; expected "));
+  EXPECT_THAT(ErrorOf(Replaced(kHeader, "lambert_sphere", "radiance")), testing::HasSubstr("unknown name \"radiance\" in exact"));
+}
+
 TEST(Technique, TheLeastHeaderIsEnough) {
   const Technique technique = Load(
       "/*---\nsummary = \"s\"\ncitation = \"c\"\nauthor_note = \"n\"\nshapes = [\"disk\"]\n"
