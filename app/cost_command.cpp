@@ -52,7 +52,7 @@ std::string CostTable(const std::string& gpu, const std::vector<Variant>& varian
     const auto found = costs[v].find(gpu);
     if (found == costs[v].end()) continue;
     add(variants[v].ShortName(), found->second.core, &found->second.full);
-    for (const char* path : {"above", "crossing", "below"}) {
+    for (const char* path : {"above", "crossing", "below", "far", "near"}) {
       const auto at = found->second.paths.find(path);
       if (at != found->second.paths.end()) add(fmt::format("  {}", path), at->second, nullptr);
     }
@@ -103,7 +103,7 @@ void PrintClaims(const ShaderLibrary& library, const std::vector<Technique>& tec
                       fmt::format("{:.2f}", MillisecondsAt1080p("bonaire", shader.cycles)), ""});
     };
     add(variant, found.core);
-    for (const auto& [path, shader] : found.paths) add(fmt::format("  light {} the horizon", path), shader);
+    for (const auto& [path, shader] : found.paths) add(fmt::format("  {}", path), shader);
   }
   fmt::print("Hill & Heitz 2016: 0.9 ms on a PlayStation 4 at 1080p, diffuse and specular, beside our technique core, estimated from bonaire ISA\n{}",
              AlignedTable(rows));

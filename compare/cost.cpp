@@ -35,7 +35,24 @@ constexpr std::array kGpus = {"tahiti",   "pitcairn", "verde",  "bonaire", "hawa
                               "polaris11", "polaris12", "vega10", "vega12",  "vega20", "raven",  "renoir",  "navi10",
                               "navi12",   "navi14",   "navi21", "navi22",  "navi23", "vangogh", "gfx1100", "gfx1101", "gfx1102"};
 
-constexpr std::array kPaths = {"above", "crossing", "below"};
+// Paths of a text that branches on the horizon (glsl/path.glsl), on whether the light is near (glsl/near.glsl), or both: then
+// the light is far where it is not said to be near, and a near one crosses the horizon, the dearest of all.
+struct Path {
+  const char* name;
+  std::vector<std::string> defines;
+};
+std::vector<Path> PathsOf(const std::string& text) {
+  const bool horizon = text.find("#if PATH_ABOVE") != std::string::npos;
+  const bool near = text.find("#if PATH_FAR") != std::string::npos;
+  if (horizon && near)
+    return {{"above", {"PATH_ABOVE", "PATH_FAR"}},
+            {"crossing", {"PATH_CROSSING", "PATH_FAR"}},
+            {"below", {"PATH_BELOW", "PATH_FAR"}},
+            {"near", {"PATH_CROSSING", "PATH_NEAR"}}};
+  if (horizon) return {{"above", {"PATH_ABOVE"}}, {"crossing", {"PATH_CROSSING"}}, {"below", {"PATH_BELOW"}}};
+  if (near) return {{"far", {"PATH_FAR"}}, {"near", {"PATH_NEAR"}}};
+  return {};
+}
 
 std::string Or(const char* variable, std::string otherwise) {
   const char* value = std::getenv(variable);
@@ -234,13 +251,11 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     EffectDefines lit = Defines(effects, variants[v].effects);
     lit.emplace_back("PATH_LIT", 1);
     add(v, "full", "lighting.frag", 2, lit);
-    if (add(v, "core", "core.frag", 1, lit).find("#if PATH_ABOVE") == std::string::npos) continue;
-    for (const std::string path : kPaths) {
+    const std::string core = add(v, "core", "core.frag", 1, lit);
+    for (const Path& path : PathsOf(core)) {
       auto defines = lit;
-      std::string name = "PATH_" + path;
-      for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      defines.emplace_back(name, 1);
-      add(v, path, "core.frag", 1, defines);
+      for (const std::string& define : path.defines) defines.emplace_back(define, 1);
+      add(v, path.name, "core.frag", 1, defines);
     }
   }
 
@@ -298,8 +313,13 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
   for (auto& costs : found) {
     for (auto& [gpu, cost] : costs) {
       // The text may ask and the shape of the light not.
-      const bool same = std::all_of(cost.paths.begin(), cost.paths.end(), [&](const auto& path) { return path.second == cost.core; });
-      if (same) cost.paths.clear();
+      const auto same = [&](const char* a, const ShaderCost& b) { return !cost.paths.contains(a) || cost.paths.at(a) == b; };
+      if (cost.paths.contains("above") && same("crossing", cost.paths.at("above")) && same("below", cost.paths.at("above"))) {
+        cost.paths["far"] = cost.paths.at("above");
+        for (const char* path : {"above", "crossing", "below"}) cost.paths.erase(path);
+      }
+      if (cost.paths.contains("crossing") && same("near", cost.paths.at("crossing"))) cost.paths.erase("near");
+      if (same("near", cost.core) && same("far", cost.core)) cost.paths.erase("near"), cost.paths.erase("far");
     }
   }
   return found;

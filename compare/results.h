@@ -47,7 +47,8 @@ struct GpuCost {
   // Of a pixel that is lit: guards assumed passed, so that what is behind them counts in full.
   ShaderCost core;  // the technique alone: glsl/core.frag
   ShaderCost full;  // the lighting pass
-  std::map<std::string, ShaderCost> paths;  // of a branching core, by where the light lies: "above", "crossing", "below"
+  std::map<std::string, ShaderCost> paths;  // of a branching core, by where the light lies: "above", "crossing", "below" the horizon
+  // and, where that matters, far; "far", "near": no side or some is seen under an obtuse angle
 };
 
 // Whose error it is, as relative RMSE of the total: the mathematics' (the ideal form in double against the truth), its shortcuts'

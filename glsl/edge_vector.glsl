@@ -6,9 +6,11 @@ vec3 EdgeVector(vec4 v0, vec4 v1, bool lambert) {
   vec3 b = vec3(v1);
   vec3 c = cross(a, b);
   float d = dot(a, b);
-  float m = v0.w * v1.w;
+  float m2 = v0.w * v1.w;
   float line2 = dot(c, c);
-  return (lambert ? LambertEdgeRatio(d, m, 1.0, line2) : EdgeRatio(d, m, 1.0, line2)) * c;
+  float ratio = lambert ? LambertEdgeRatio(d, m2, 1.0, line2) : EdgeRatio(d, m2, 1.0, line2);
+  if (kEdgeMirrored) ratio = MirroredEdge(ratio, d, line2);
+  return ratio * c;
 }
 
 // Where the side from a corner above to one below meets the horizon; only its direction counts.

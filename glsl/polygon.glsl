@@ -8,6 +8,12 @@
 #include "lit.glsl"
 #include "surface.glsl"
 
+// A rectangle that is small against its distance.
+//
+// There the terms of opposite edges differ by size over distance of themselves, and their sum loses as many digits: 1e-7 · distance/size
+// of it, all of it at 1e7. The centre alone is wrong by (size/distance)²; both are 1.6e-5 where the half diagonal is 1/250 of the distance.
+const float kSmallRectangle = 1.6e-5;
+
 // In the shading frame (tangent, bitangent, normal) and in the light's own axes. The light faces the point:
 // half_a × half_b points to the origin's side.
 struct RectangleView {
@@ -17,6 +23,7 @@ struct RectangleView {
   vec3 in_plane;   // m, the centre along the light's axis_x, axis_y and normal
   vec3 horizon;    // the shading normal along the same
   vec2 half_size;  // m, |half_a| and |half_b|
+  bool small;      // against its distance
 };
 
 // position: m, world; the frame's three axes are unit and perpendicular.
@@ -29,22 +36,24 @@ RectangleView ViewRectangle(Light light, vec3 position, vec3 tangent, vec3 bitan
   view.half_b = vec3(dot(tangent, light.half_axis_y), dot(bitangent, light.half_axis_y), view.horizon.y * light.half_size.y);
   view.in_plane = vec3(dot(light.axis_x, to_center), dot(light.axis_y, to_center), dot(light.normal, to_center));
   view.half_size = light.half_size;
+  view.small = dot(light.half_size, light.half_size) < kSmallRectangle * dot(view.in_plane, view.in_plane);
   return view;
 }
 
 // The third component of a × b.
 float CrossZ(vec3 a, vec3 b) { return a.x * b.y - a.y * b.x; }
 
+// Below any light's (length)⁴: 1e-30 is a light of 3e-8 m seen from as far. Keeps an edge through the point finite.
+const float kSmallestEdge = 1e-30;
+
+// θ/line of an edge from the acute angle's, for an "edge" that leaves the mirroring to its caller: (π − θ')/line where d < 0.
+float MirroredEdge(float acute, float d, float line2) { return d >= 0.0 ? acute : kPi * inversesqrt(line2 + kSmallestEdge) - acute; }
+
 // A form factor lies in [0, 1]; rounding can leave that range.
 float AsFormFactor(float value) { return clamp(value, 0.0, 1.0); }
 
-// A rectangle that is small against its distance.
-//
-// There the terms of opposite edges differ by size over distance of themselves, and their sum loses as many digits: 1e-7 · distance/size
-// of it, all of it at 1e7. The centre alone is wrong by (size/distance)²; both are 1.6e-5 where the half diagonal is 1/250 of the distance.
-const float kSmallRectangle = 1.6e-5;
-
-bool IsSmallRectangle(vec3 center, vec3 half_a, vec3 half_b) {
+// The same of any parallelogram, as a light is in a lobe's space.
+bool IsSmallParallelogram(vec3 center, vec3 half_a, vec3 half_b) {
   return dot(half_a, half_a) + dot(half_b, half_b) < kSmallRectangle * dot(center, center);
 }
 

@@ -8,15 +8,15 @@
 // θ/sin θ from y = |cos θ|, θ acute.
 float AcuteAngleOverSine(float y) { return (5.42031 + (3.12829 + 0.0902326 * y) * y) / (3.45068 + (4.18814 + y) * y); }
 
-// θ/line, θ the angle between v0 and v1, from d = v0·v1 and m = |v0||v1|, where |v0 × v1| = share · line, line2 = line².
-float EdgeRatio(float d, float m, float share, float line2) {
-  float x = EdgeCosine(d, m);
-  return MirrorOverSine(x, AcuteAngleOverSine(abs(x))) / max(m, 1e-30) * share;
+// θ/line, θ the angle between v0 and v1, from d = v0·v1 and m2 = |v0|²|v1|², where |v0 × v1| = share · line, line2 = line².
+float EdgeRatio(float d, float m2, float share, float line2) {
+  float x = EdgeCosine(d, m2);
+  return MirrorOverSine(x, AcuteAngleOverSine(abs(x))) / EdgeLengths(m2) * share;
 }
 
 // θ itself; `area` = |v0 × v1|. Mirrored as an angle, where it needs no clamp.
-float EdgeAngle(float d, float m, float area) {
-  float x = EdgeCosine(d, m);
-  float acute = AcuteAngleOverSine(min(abs(x), 1.0)) * area / max(m, 1e-30);
+float EdgeAngle(float d, float m2, float area) {
+  float x = EdgeCosine(d, m2);
+  float acute = AcuteAngleOverSine(min(abs(x), 1.0)) * area / EdgeLengths(m2);
   return x > 0.0 ? acute : kPi - acute;
 }

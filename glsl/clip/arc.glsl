@@ -1,10 +1,14 @@
-// Exact horizon clipping of a rectangle without a branch (ours). Dual; after an "edge".
+// Exact horizon clipping of a rectangle without cases (ours). Dual; after an "edge".
 //
 // In the light's plane, let both sides rise: A and B are the full sides with A_z, B_z ≥ 0 and c the highest corner, so
 // corners are c − A, c − B and, lowest, c − A − B. What is above the horizon is always the polygon
 //   v0 = c − k0 A − k1 B,  v1 = c − k1 B,  c,  v3 = c − k2 A,  v4 = c − k2 A − k3 B
 // with k0 and k1 the shares that are above of the two sides at the corner c − B, k2 and k3 of those at c − A; at most one of each pair is
-// cut, and what is wholly below vanishes by itself. The closing side v4 v0 lies in the horizon, where an edge adds ±θ/2π.
+// cut, and what is wholly below vanishes by itself. The closing side v4 v0 lies in the horizon, where an edge adds ±θ/2π. What a light
+// wholly above its horizon does not need, the cut and that side, stands behind a branch that neighbouring pixels share.
+#include "path.glsl"
+#include "near.glsl"
+
 struct HorizonShares {
   float k0, k1, k2, k3;
 };
@@ -24,47 +28,67 @@ HorizonShares CutAtHorizon(float top, float rise_a, float rise_b) {
   return shares;
 }
 
-// The vector form factor of what is above the horizon; its z is the form factor for a clamped cosine about +z. Of the parallelogram center ± half_a ± half_b with half_a × half_b towards the origin.
-vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) {
-  if (!Lit(!IsSmallRectangle(center, half_a, half_b))) return ClippedSmallRectangle(center, half_a, half_b);
+// The vector form factor of what is above the horizon; its z is the form factor for a clamped cosine about +z. Of the
+// parallelogram center ± half_a ± half_b with half_a × half_b towards the origin; may_be_small: against its distance.
+vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b, bool may_be_small) {
+  if (!Lit(!may_be_small)) {
+    if (IsSmallParallelogram(center, half_a, half_b)) return ClippedSmallRectangle(center, half_a, half_b);
+  }
   float sign_a = half_a.z < 0.0 ? -2.0 : 2.0;
   float sign_b = half_b.z < 0.0 ? -2.0 : 2.0;
   vec3 a = half_a * sign_a;
   vec3 b = half_b * sign_b;
   vec3 c = center + 0.5 * (a + b);
-  HorizonShares k = CutAtHorizon(c.z, a.z, b.z);
+  if (WhollyBelow(c.z <= 0.0)) return vec3(0.0);
+  bool above = WhollyAbove(c.z > a.z + b.z);
+  HorizonShares k = HorizonShares(1.0, 1.0, 1.0, 1.0);
+  if (!above) k = CutAtHorizon(c.z, a.z, b.z);
 
   vec3 v1 = c - k.k1 * b;
   vec3 v0 = v1 - k.k0 * a;
   vec3 v3 = c - k.k2 * a;
   vec3 v4 = v3 - k.k3 * b;
-  float l0 = length(v0);
-  float l1 = length(v1);
-  float lc = length(c);
-  float l3 = length(v3);
-  float l4 = length(v4);
+  float d0 = dot(v0, v1);
+  float d1 = dot(v1, c);
+  float d2 = dot(c, v3);
+  float d3 = dot(v3, v4);
+  float l0 = dot(v0, v0);
+  float l1 = dot(v1, v1);
+  float lc = dot(c, c);
+  float l3 = dot(v3, v3);
+  float l4 = dot(v4, v4);
   // The edges' cross products over their shares: v0 v1 lies on the line through v1 along A, v3 v4 on that through v3 along B.
+  vec3 c_a = cross(c, a);
+  vec3 c_b = cross(c, b);
   vec3 a_b = cross(a, b);
-  vec3 line2 = cross(c, a);
-  vec3 line0 = line2 + k.k1 * a_b;
-  vec3 line1 = cross(c, b);
-  vec3 line3 = line1 - k.k2 * a_b;
-  float t0 = EdgeRatio(dot(v0, v1), l0 * l1, k.k0, dot(line0, line0));
-  float t1 = EdgeRatio(dot(v1, c), l1 * lc, k.k1, dot(line1, line1));
-  float t2 = EdgeRatio(dot(c, v3), lc * l3, k.k2, dot(line2, line2));
-  float t3 = EdgeRatio(dot(v3, v4), l3 * l4, k.k3, dot(line3, line3));
-  float closing = EdgeAngle(dot(v4, v0), l4 * l0, abs(CrossZ(v4, v0)));
+  vec3 line0 = c_a + k.k1 * a_b;
+  vec3 line3 = c_b - k.k2 * a_b;
+  float t0 = EdgeRatio(d0, l0 * l1, k.k0, dot(line0, line0));
+  float t1 = EdgeRatio(d1, l1 * lc, k.k1, dot(c_b, c_b));
+  float t2 = EdgeRatio(d2, lc * l3, k.k2, dot(c_a, c_a));
+  float t3 = EdgeRatio(d3, l3 * l4, k.k3, dot(line3, line3));
+  if (kEdgeMirrored && HasObtuseSide(min(min(d0, d1), min(d2, d3)) < 0.0)) {
+    t0 = MirroredEdge(t0, d0, dot(line0, line0));
+    t1 = MirroredEdge(t1, d1, dot(c_b, c_b));
+    t2 = MirroredEdge(t2, d2, dot(c_a, c_a));
+    t3 = MirroredEdge(t3, d3, dot(line3, line3));
+  }
+  float closing = 0.0;
+  if (!above) {
+    vec2 chord = vec2(v4.x - v0.x, v4.y - v0.y);
+    closing = EdgeAngle(dot(v4, v0), l4 * l0, abs(chord.x * v0.y - chord.y * v0.x));
+  }
   // Sides rising the same way keep half_a × half_b towards the origin: then the polygon runs clockwise. A side in the
   // horizon adds its angle upwards.
   float scale = sign_a * sign_b * (-0.125 / kPi);
-  vec3 sum = scale * (t0 * line0 + t1 * line1 - t2 * line2 - t3 * line3);
+  vec3 sum = ((t0 - t2) * scale) * c_a + ((t1 - t3) * scale) * c_b + ((t0 * k.k1 + t3 * k.k2) * scale) * a_b;
   return vec3(sum.x, sum.y, AsFormFactor(sum.z + closing * (0.5 / kPi)));
 }
 
 // The form factor of the light itself, above the horizon: in its own axes its sides are parallel to the axes, which leaves few products.
 // Heights over the horizon are taken there too: in float the light's two descriptions differ by more than what matters at its sides.
 float ClippedLambert(RectangleView view) {
-  if (!Lit(!IsSmallRectangle(view.center, view.half_a, view.half_b))) return ClippedSmallRectangle(view.center, view.half_a, view.half_b).z;
+  if (!Lit(!view.small)) return ClippedSmallRectangle(view.center, view.half_a, view.half_b).z;
   vec3 n = view.horizon;
   float sign_a = n.x < 0.0 ? -2.0 : 2.0;
   float sign_b = n.y < 0.0 ? -2.0 : 2.0;
@@ -73,10 +97,14 @@ float ClippedLambert(RectangleView view) {
   float x = view.in_plane.x + 0.5 * side_x;
   float y = view.in_plane.y + 0.5 * side_y;
   float z = view.in_plane.z;
+  HorizonShares k = HorizonShares(1.0, 1.0, 1.0, 1.0);
 #if EFFECT_HORIZON
-  HorizonShares k = CutAtHorizon(n.x * x + n.y * y + n.z * z, n.x * side_x, n.y * side_y);
+  float top = n.x * x + n.y * y + n.z * z;
+  if (WhollyBelow(top <= 0.0)) return 0.0;
+  bool above = WhollyAbove(top > n.x * side_x + n.y * side_y);
+  if (!above) k = CutAtHorizon(top, n.x * side_x, n.y * side_y);
 #else
-  HorizonShares k = HorizonShares(1.0, 1.0, 1.0, 1.0);  // wholly above, or wholly below: then the sum is negative
+  bool above = true;  // or wholly below: then the sum is negative
 #endif
 
   float x0 = x - k.k0 * side_x;
@@ -88,29 +116,39 @@ float ClippedLambert(RectangleView view) {
   float row = y * y + z2;     // of c v3
   float column = x * x + z2;  // of v1 c
   float column4 = x4 * x4 + z2;
-  float l0 = sqrt(x0 * x0 + row0);
-  float l1 = sqrt(x * x + row0);
-  float lc = sqrt(x * x + row);
-  float l3 = sqrt(x4 * x4 + row);
-  float l4 = sqrt(y4 * y4 + column4);
-  float side_x2 = side_x * side_x;
-  float side_y2 = side_y * side_y;
-  float t0 = LambertEdgeRatio(x0 * x + row0, l0 * l1, k.k0, side_x2 * row0);
-  float t1 = LambertEdgeRatio(y0 * y + column, l1 * lc, k.k1, side_y2 * column);
-  float t2 = LambertEdgeRatio(x * x4 + row, lc * l3, k.k2, side_x2 * row);
-  float t3 = LambertEdgeRatio(y * y4 + column4, l3 * l4, k.k3, side_y2 * column4);
+  float d0 = x0 * x + row0;
+  float d1 = y0 * y + column;
+  float d2 = x * x4 + row;
+  float d3 = y * y4 + column4;
+  float l0 = x0 * x0 + row0;
+  float l1 = x * x + row0;
+  float lc = x * x + row;
+  float l3 = x4 * x4 + row;
+  float l4 = y4 * y4 + column4;
+  // θ over the distance from the edge's line: that times the edge's length is its cross product.
+  float length_x = 2.0 * view.half_size.x;
+  float length_y = 2.0 * view.half_size.y;
+  float t0 = LambertEdgeRatio(d0, l0 * l1, k.k0 * length_x, row0);
+  float t1 = LambertEdgeRatio(d1, l1 * lc, k.k1 * length_y, column);
+  float t2 = LambertEdgeRatio(d2, lc * l3, k.k2 * length_x, row);
+  float t3 = LambertEdgeRatio(d3, l3 * l4, k.k3 * length_y, column4);
+  if (kEdgeMirrored && HasObtuseSide(min(min(d0, d1), min(d2, d3)) < 0.0)) {
+    t0 = MirroredEdge(t0, d0, row0);
+    t1 = MirroredEdge(t1, d1, column);
+    t2 = MirroredEdge(t2, d2, row);
+    t3 = MirroredEdge(t3, d3, column4);
+  }
 
-  // n · (c × A), n · (c × B), n · (A × B).
-  float c_a = side_x * (n.y * z - n.z * y);
-  float c_b = side_y * (n.z * x - n.x * z);
-  float a_b = side_x * side_y * n.z;
-#if EFFECT_HORIZON
-  // v4 × v0 from the shares.
-  float area = abs((k.k2 - k.k0) * c_a + (k.k3 - k.k1) * c_b + (k.k1 * k.k2 - k.k0 * k.k3) * a_b);
-  float closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);
-#else
+  // The unit cross products along the normal, times the distance.
+  float u0 = n.y * z - n.z * y0;
+  float u1 = n.z * x - n.x * z;
+  float u2 = n.y * z - n.z * y;
+  float u3 = n.z * x4 - n.x * z;
   float closing = 0.0;
-#endif
-  float sum = t0 * (c_a + k.k1 * a_b) + t1 * c_b - t2 * c_a - t3 * (c_b - k.k2 * a_b);
-  return AsFormFactor(sign_a * sign_b * (-0.125 / kPi) * sum + closing * (0.5 / kPi));
+  if (!above) {
+    float area = abs((y4 - y0) * (n.x * z - n.z * x0) - (x4 - x0) * u0);
+    closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);
+  }
+  float sum = sign_b * (t0 * u0 - t2 * u2) + sign_a * (t1 * u1 - t3 * u3);
+  return AsFormFactor((-0.25 / kPi) * sum + closing * (0.5 / kPi));
 }

@@ -11,6 +11,6 @@ vec3 WholeCorners(vec3 center, vec3 half_a, vec3 half_b, bool lambert) {
                        EdgeVector(v3, v0, lambert));
 }
 
-vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) { return WholeCorners(center, half_a, half_b, false); }
+vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b, bool may_be_small) { return WholeCorners(center, half_a, half_b, false); }
 
 float ClippedLambert(RectangleView view) { return WholeCorners(view.center, view.half_a, view.half_b, true).z; }

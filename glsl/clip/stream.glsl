@@ -18,7 +18,7 @@ vec3 StreamedCorners(vec3 center, vec3 half_a, vec3 half_b, bool lambert) {
 }
 
 // Its z is the form factor for a clamped cosine about +z.
-vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b) { return StreamedCorners(center, half_a, half_b, false); }
+vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b, bool may_be_small) { return StreamedCorners(center, half_a, half_b, false); }
 
 // The form factor of the light itself.
 float ClippedLambert(RectangleView view) { return StreamedCorners(view.center, view.half_a, view.half_b, true).z; }

@@ -3,29 +3,32 @@
 // With m = |v0||v1|, d = v0·v1 and q = m + d, u = √(q/m) is √2 times the cosine of half the angle θ, and
 //   θ/|v0 × v1| = P(u)/√(m q), P(u) = √2 acos(u/√2)/√(1 − u²/2),
 // smooth on [0, √2], by a minimax polynomial of degree 7, relative error 4.3e-7. In float, q has few digits left as θ nears π.
+#include "polygon.glsl"
+
 float WholeEdgePolynomial(float u) {
   return 2.22144051 + u * (-0.999909759 + u * (0.553942327 + u * (-0.324588937 + u * (0.180520423 +
          u * (-0.0815341527 + u * (0.0243117182 - u * 0.00338516184))))));
 }
 
-// Below any light's (length)⁴: 1e-30 is a light of 3e-8 m seen from as far. Keeps an edge through the point finite.
-const float kSmallestEdge = 1e-30;
+const bool kEdgeMirrored = false;
 
-// A corner as the edges want it: direction and length.
-vec4 EdgeVertex(vec3 v) { return vec4(v, length(v)); }
+// A corner as the edges want it: direction and squared length.
+vec4 EdgeVertex(vec3 v) { return vec4(v, dot(v, v)); }
 
-// θ/line, θ the angle between v0 and v1, from d = v0·v1 and m = |v0||v1|, where |v0 × v1| = share · line, line2 = line².
-float EdgeRatio(float d, float m, float share, float line2) {
+// θ/line, θ the angle between v0 and v1, from d = v0·v1 and m2 = |v0|²|v1|², where |v0 × v1| = share · line, line2 = line².
+float EdgeRatio(float d, float m2, float share, float line2) {
+  float m = sqrt(m2);
   float q = m + d;
   float i = inversesqrt(m * abs(q) + kSmallestEdge);
   return share * i * WholeEdgePolynomial(q * i);
 }
 
 // Of the light itself, for the diffuse lobe.
-float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
+float LambertEdgeRatio(float d, float m2, float share, float line2) { return EdgeRatio(d, m2, share, line2); }
 
 // θ itself; `area` = |v0 × v1|. Where the angle is obtuse the area says little, the half angle much: θ = P(u) √(2 − u²).
-float EdgeAngle(float d, float m, float area) {
+float EdgeAngle(float d, float m2, float area) {
+  float m = sqrt(m2);
   float q = m + d;
   float i = inversesqrt(m * abs(q) + kSmallestEdge);
   float u = q * i;

@@ -1,34 +1,32 @@
-// The edge integral by the half angle of the acute angle, an obtuse one mirrored by the edge's own cross product (ours). Dual.
+// The edge integral by the acute angle's cosine, an obtuse angle mirrored by the edge's own cross product (ours). Dual.
 //
-// With m = |v0||v1|, d = v0·v1 and q = m + |d|, u = √(q/m) is √2 times the cosine of half the acute angle θ', and
-//   θ'/|v0 × v1| = P(u)/√(m q), P(u) = √2 acos(u/√2)/√(1 − u²/2),
-// smooth on [1, √2], where degree 4 leaves a relative error of 7.1e-8: the arc cosine itself in float. Nothing cancels: q ≥ m,
-// and π − θ' is divided by a cross product that the caller has without subtracting lengths.
-float EdgePolynomial(float u) {
-  return 2.20234978 + u * (-0.907734599 + u * (0.362776993 + u * (-0.0993743546 + u * 0.0127784005)));
+// With d = v0·v1 and m² = |v0|²|v1|² the acute angle θ' has the cosine y = |d|/m, and
+//   θ'/|v0 × v1| = F(y)/m, F(y) = acos(y)/√(1 − y²),
+// smooth on [0, 1], by a minimax polynomial of degree 6, relative error 3.0e-6, pinned to π/2 at 0, where both cases meet. No root but
+// 1/m is taken, and nothing cancels: π − θ' is divided by a cross product that the caller has without subtracting lengths.
+#include "polygon.glsl"
+
+float EdgePolynomial(float y) {
+  return 0.5 * kPi + y * (-0.999694194 + y * (0.77903913 + y * (-0.620806772 + y * (0.426115597 + y * (-0.199208057 + y * 0.0437609992)))));
 }
 
-// Below any light's (length)⁴: 1e-30 is a light of 3e-8 m seen from as far. Keeps an edge through the point finite.
-const float kSmallestEdge = 1e-30;
+// Ratios are of the acute angle: the caller mirrors (MirroredEdge).
+const bool kEdgeMirrored = true;
 
-// A corner as the edges want it: direction and length.
-vec4 EdgeVertex(vec3 v) { return vec4(v, length(v)); }
+// A corner as the edges want it: direction and squared length.
+vec4 EdgeVertex(vec3 v) { return vec4(v, dot(v, v)); }
 
-// θ/line, θ the angle between v0 and v1, from d = v0·v1 and m = |v0||v1|, where |v0 × v1| = share · line, line2 = line².
-float EdgeRatio(float d, float m, float share, float line2) {
-  float q = m + abs(d);
-  float i = inversesqrt(m * q + kSmallestEdge);
-  float acute = share * i * EdgePolynomial(q * i);
-  return d >= 0.0 ? acute : kPi * inversesqrt(line2 + kSmallestEdge) - acute;
+// θ'/line from d = v0·v1 and m2 = |v0|²|v1|², where |v0 × v1| = share · line, line2 = line².
+float EdgeRatio(float d, float m2, float share, float line2) {
+  float i = inversesqrt(m2 + kSmallestEdge);
+  return share * i * EdgePolynomial(abs(d) * i);
 }
 
 // Of the light itself, for the diffuse lobe.
-float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
+float LambertEdgeRatio(float d, float m2, float share, float line2) { return EdgeRatio(d, m2, share, line2); }
 
 // θ itself; `area` = |v0 × v1|.
-float EdgeAngle(float d, float m, float area) {
-  float q = m + abs(d);
-  float i = inversesqrt(m * q + kSmallestEdge);
-  float acute = area * i * EdgePolynomial(q * i);
+float EdgeAngle(float d, float m2, float area) {
+  float acute = EdgeRatio(d, m2, area, 1.0);
   return d >= 0.0 ? acute : kPi - acute;
 }

@@ -6,8 +6,8 @@
 #include "rational_edge.glsl"
 
 // Of the light itself, for the diffuse lobe.
-float LambertEdgeRatio(float d, float m, float share, float line2) {
-  float x = EdgeCosine(d, m);
+float LambertEdgeRatio(float d, float m2, float share, float line2) {
+  float x = EdgeCosine(d, m2);
   float y = abs(x);
-  return MirrorOverSine(x, 1.5708 + (-0.879406 + 0.308609 * y) * y) / max(m, 1e-30) * share;
+  return MirrorOverSine(x, 1.5708 + (-0.879406 + 0.308609 * y) * y) / EdgeLengths(m2) * share;
 }

@@ -2,4 +2,4 @@
 #include "rational_edge.glsl"
 
 // Of the light itself, for the diffuse lobe.
-float LambertEdgeRatio(float d, float m, float share, float line2) { return EdgeRatio(d, m, share, line2); }
+float LambertEdgeRatio(float d, float m2, float share, float line2) { return EdgeRatio(d, m2, share, line2); }

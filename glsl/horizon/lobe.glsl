@@ -3,5 +3,5 @@
 
 // The vector form factor of the transformed light.
 vec3 LobeVector(vec4 m, RectangleView view) {
-  return ClippedVector(LtcTransform(m, view.center), LtcTransform(m, view.half_a), LtcTransform(m, view.half_b));
+  return ClippedVector(LtcTransform(m, view.center), LtcTransform(m, view.half_a), LtcTransform(m, view.half_b), view.small);
 }

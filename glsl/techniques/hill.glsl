@@ -1,7 +1,7 @@
 /*---
 summary = "Linearly transformed cosines, horizon by the vector form factor's proxy sphere"
 citation = "Hill & Heitz 2016; Heitz & Hill 2017; Snyder 1996; Heitz et al. 2016"
-author_note = "Published: clipped sphere from a table, rational edge, disks by a cubic, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, disks and spheres by their cone, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
+author_note = "Published: clipped sphere from a table, rational edge, disks by a cubic, tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clipped sphere by a fit, disks and spheres by their cone, mirrored cosine edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
@@ -22,8 +22,8 @@ choices = [
 name = "edge"
 summary = "Angle over sine of the rectangle's edge integral"
 choices = [
-  ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
-  ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
+  ["mirrored", "polynomial in the acute angle's cosine, mirrored where obtuse by the exact cross product"],
+  ["half_angle", "polynomial in the half angle's cosine, no case for near lights, fewer digits near π"],
   ["rational", "rational fit of angle over sine on unit vectors, mirrored where obtuse"],
   ["quadratic", "the rational fit for the specular lobe, a quadratic for the diffuse one"],
   ["acos", "the language's arc cosine"],
@@ -141,7 +141,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   {
     RectangleView view = ViewRectangle(light, surface.position, frame.tangent, frame.bitangent, frame.normal);
     form_factor = LambertProxy(LambertVector(view));
-    VectorFormFactor whole = ParallelogramVector(LtcTransform(cell.m, view.center), LtcTransform(cell.m, view.half_a), LtcTransform(cell.m, view.half_b));
+    VectorFormFactor whole = ParallelogramVector(LtcTransform(cell.m, view.center), LtcTransform(cell.m, view.half_a), LtcTransform(cell.m, view.half_b), view.small);
     transformed = vec3(whole.f.x, whole.f.y, ClippedProxy(whole));
   }
 #if EFFECT_DISK || EFFECT_SPHERE

@@ -20,7 +20,7 @@ choices = [
 name = "clip"
 summary = "Clipping where the light crosses the horizon"
 choices = [
-  ["arc", "branchless in the light's plane, the closing side as an arc"],
+  ["arc", "in the light's plane without cases, the closing side as an arc"],
   ["stream", "side by side as the edges are added (Sutherland & Hodgman's, the published one)"],
   ["switch", "one case for each set of corners above the horizon"],
 ]
@@ -29,8 +29,8 @@ choices = [
 name = "edge"
 summary = "Angle over sine of the edge integral"
 choices = [
-  ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
-  ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
+  ["mirrored", "polynomial in the acute angle's cosine, mirrored where obtuse by the exact cross product"],
+  ["half_angle", "polynomial in the half angle's cosine, no case for near lights, fewer digits near π"],
   ["acos", "the language's arc cosine (the published one)"],
 ]
 
@@ -101,7 +101,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   }
 #if EFFECT_HORIZON
   else {
-    vec3 f = ClippedVector(view.center, view.half_a, view.half_b);
+    vec3 f = ClippedVector(view.center, view.half_a, view.half_b, view.small);
     field = frame.tangent * f.x + frame.bitangent * f.y + frame.normal * f.z;
   }
 #endif

@@ -1,7 +1,7 @@
 /*---
 summary = "Linearly transformed cosines, clipped exactly at the horizon"
 citation = "Heitz et al. 2016; Hill & Heitz 2016; Heitz & Hill 2017; Lambert 1760"
-author_note = "Published: 16-case clip, rational edge, disks by a cubic and a proxy sphere (no exact clip was), tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: branchless clip in the light's plane, disks and spheres by their cone and exactly clipped, mirrored half-angle edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
+author_note = "Published: 16-case clip, rational edge, disks by a cubic and a proxy sphere (no exact clip was), tables fitted with an L3 norm, Fresnel averaged over the lobe; stored as their code ships it (the talk ends at norm=none+axis=cos). Ours: clip without cases in the light's plane, disks and spheres by their cone and exactly clipped, mirrored cosine edge, tables fitted on polygons and stored in the mirror frame, Fresnel towards the light."
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
@@ -12,7 +12,7 @@ exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "point_limit", "
 name = "clip"
 summary = "Clipping of rectangles at the horizon"
 choices = [
-  ["arc", "branchless in the light's plane, the closing side as an arc"],
+  ["arc", "in the light's plane without cases, the closing side as an arc"],
   ["switch", "one case for each set of corners above the horizon"],
   ["stream", "on the fly, side by side as the edges are added"],
   ["none", "none: what is below subtracts"],
@@ -22,8 +22,8 @@ choices = [
 name = "edge"
 summary = "Angle over sine of the rectangle's edge integral"
 choices = [
-  ["mirrored", "polynomial in the acute half angle, mirrored where obtuse by the exact cross product"],
-  ["half_angle", "polynomial in the half angle's cosine, fewer cycles, fewer digits near π"],
+  ["mirrored", "polynomial in the acute angle's cosine, mirrored where obtuse by the exact cross product"],
+  ["half_angle", "polynomial in the half angle's cosine, no case for near lights, fewer digits near π"],
   ["rational", "rational fit of angle over sine on unit vectors, mirrored where obtuse"],
   ["quadratic", "the rational fit for the specular lobe, a quadratic for the diffuse one"],
   ["acos", "the language's arc cosine"],

@@ -30,7 +30,7 @@ TEST(Cost, FiguresRepeatExactlyAndCostNothingTheSecondTime) {
   const TemporaryFolder folder;
   const ShaderLibrary library;
   const std::vector<Technique> techniques = LoadTechniques(library);
-  const std::vector<Variant> variants = Variants(techniques, {"point", "ltc@published", "karis"});
+  const std::vector<Variant> variants = Variants(techniques, {"point", "ltc@published", "karis", "hill"});
   const Scene scene = SceneOfEffects(kUsual);
   const CostMeter meter({"bonaire", "navi21"}, folder.path() / "cache");
   const auto first = meter.Measure(library, variants, scene);
@@ -57,6 +57,11 @@ TEST(Cost, FiguresRepeatExactlyAndCostNothingTheSecondTime) {
   EXPECT_GT(ltc.paths.at("crossing").cycles, ltc.paths.at("above").cycles);
   EXPECT_GT(ltc.paths.at("above").cycles, 2 * ltc.paths.at("below").cycles);
   EXPECT_GT(ltc.paths.at("below").cycles, 200);
+  EXPECT_FALSE(ltc.paths.contains("near"));
+  // A proxy asks for no horizon; what a near light's obtuse sides need stands behind a branch.
+  const GpuCost& hill = first[3].at("bonaire");
+  ASSERT_EQ(hill.paths.size(), 2u);
+  EXPECT_GT(hill.paths.at("near").cycles, 1.1 * hill.paths.at("far").cycles);
   // The pass adds reading and writing the G-buffer: guards that are assumed passed discount nothing.
   EXPECT_NEAR(ltc.full.cycles, ltc.core.cycles, 0.1 * ltc.core.cycles);
   EXPECT_GT(first[1].at("navi21").core.cycles, 0);
