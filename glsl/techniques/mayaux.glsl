@@ -101,6 +101,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   seen.in_plane = -from_center;
   seen.horizon = normal;
   seen.half_size = half_size;
+  seen.small = dot(half_size, half_size) < kSmallRectangle * dot(from_center, from_center);
   VectorFormFactor mean = LambertVector(seen);
   vec3 average = mean.f * inversesqrt(max(dot(mean.f, mean.f), 1e-30));
   float form_factor = max(mean.height, 0.0);
