@@ -47,5 +47,6 @@ void AddView(CLI::App& app, int& status);
 void AddStress(CLI::App& app, int& status);
 void AddExplain(CLI::App& app, int& status);
 void AddExport(CLI::App& app, int& status);
+void AddClaims(CLI::App& app, int& status);
 
 }  // namespace arealab

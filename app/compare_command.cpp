@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/progress.h"
 #include "compare/baseline.h"
+#include "compare/claims.h"
 #include "compare/harness.h"
 #include "compare/report.h"
 #include "compare/sweep.h"
@@ -31,6 +32,7 @@ struct CompareArguments {
   bool all_variants = false;
   bool timing = false;
   bool split = false;
+  std::vector<std::string> sources;
 };
 
 struct Limit {
@@ -58,11 +60,20 @@ std::vector<Variant> ChosenVariants(const CompareArguments& arguments, const std
   if (arguments.all_variants && !arguments.techniques.empty()) {
     throw InputError("--all-variants and --technique exclude each other; expected one of them");
   }
-  if (arguments.all_variants) return AllVariants(techniques);
+  if (!arguments.sources.empty() && !arguments.techniques.empty()) {
+    throw InputError("--source and --technique exclude each other; expected one of them");
+  }
   std::vector<Variant> variants;
   if (arguments.techniques.empty()) {
-    variants = DefaultVariants(techniques);
-    std::erase_if(variants, [](const Variant& variant) { return variant.technique->yardstick; });
+    std::vector<ClaimSource> sources;
+    for (const std::string& name : arguments.sources) {
+      for (const ClaimSource& source : ClaimSources(name)) sources.push_back(source);
+    }
+    variants = arguments.all_variants ? AllVariants(techniques) : DefaultVariants(techniques);
+    std::erase_if(variants, [&](const Variant& variant) {
+      if (sources.empty()) return variant.technique->yardstick && !arguments.all_variants;
+      return std::none_of(sources.begin(), sources.end(), [&](const ClaimSource& source) { return IsFrom(*variant.technique, source); });
+    });
     return variants;
   }
   for (const std::string& name : arguments.techniques) {
@@ -183,6 +194,8 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
   command->add_option("--technique", arguments->techniques,
                       "a variant, e.g. ltc, ltc@published or ltc+clip=switch; may be given several times "
                       "(default: each technique's default and published form)");
+  command->add_option("--source", arguments->sources,
+                      "the techniques of one source: hill, mayaux, light_field, drobot or oat; may be given several times");
   command->add_flag("--all-variants", arguments->all_variants, "every combination of every technique's options");
   command->add_option("--limit", arguments->limits,
                       "METRIC=X: exit with status 1 where a variant's total error exceeds X, e.g. rel_rmse=0.05");

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   arealab::AddStress(app, status);
   arealab::AddExplain(app, status);
   arealab::AddExport(app, status);
+  arealab::AddClaims(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {
