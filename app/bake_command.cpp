@@ -31,9 +31,9 @@ void RunBake(const BakeArguments& arguments) {
   double open = 0.0;
   for (const Mesh& mesh : scene.meshes) {
     vertices += mesh.apertures.size();
-    for (const glm::vec4& aperture : mesh.apertures) {
-      open += static_cast<double>(aperture.w);
-      closed += aperture.w == 0.0f;
+    for (const Aperture& aperture : mesh.apertures) {
+      open += static_cast<double>(aperture.open.w);
+      closed += aperture.open.w == 0.0f;
     }
   }
   fmt::print("{}: {} vertices, {} rays each, {:.1f} % of their hemispheres open, {} closed; {} in {:.2f} s, in {}\n", scene.name,

@@ -22,6 +22,13 @@ const std::vector<std::string> kExportTargets{"glsl330", "essl300", "spirv", "hl
 // With more than one light the array holds as many: 16 KiB, the least that OpenGL ES 3.0 promises of a uniform block.
 constexpr int kExportedLights = 16384 / (16 * kLightRows);
 
+// Spherical caps of the hemisphere that a point sees, baked per vertex or per texel [Oat 2006].
+constexpr std::pair<const char*, const char*> kApertureSamplers[] = {
+    {"gbuffer_aperture", "the cap about the mean direction that meets no surface"},
+    {"gbuffer_first_region", "the cap of the largest contiguous region of such directions"},
+    {"gbuffer_second_region", "the cap of the second largest, or of none"},
+    {"gbuffer_blocked", "the cap about the mean direction that meets a surface"}};
+
 struct ExportArguments {
   CommonOptions common;
   std::string scene;
@@ -107,9 +114,17 @@ nlohmann::ordered_json InputsJson(const Variant& variant, const std::vector<Effe
        {"format", "RGBA32F"},
        {"rgb", "base colour, linear"},
        {"a", "metalness, or below 0 a non-metal whose specular lobe weighs 1 + a"}}};
+  for (const auto& [sampler, meaning] : kApertureSamplers) {
+    if (shader.text.find(fmt::format("sampler2D {};", sampler)) == std::string::npos) continue;
+    json["gbuffer"].push_back({{"sampler", sampler}, {"format", "RGBA32F"}, {"rgb", fmt::format("unit axis, world, of {}; 0 where nothing was baked", meaning)},
+                               {"a", "1 - cos of the cap's radius: its area over 2 pi"}});
+  }
   json["uniforms"] = {{{"name", "view_position"}, {"type", "vec3"}, {"meaning", "the camera, m, world"}}};
   if (shader.text.find("uniform int light_count;") != std::string::npos) {
     json["uniforms"].push_back({{"name", "light_count"}, {"type", "int"}, {"meaning", fmt::format("lights in use, 1 to {}", lights)}});
+  }
+  if (shader.text.find("uniform vec3 sky_radiance;") != std::string::npos) {
+    json["uniforms"].push_back({{"name", "sky_radiance"}, {"type", "vec3"}, {"meaning", "from every direction, in the lights' unit, linear RGB"}});
   }
   for (const Knob& knob : variant.technique->knobs) {
     if (std::ranges::find(shader.knobs, knob.name) == shader.knobs.end()) continue;

@@ -47,6 +47,7 @@ void AddView(CLI::App& app, int& /*status*/) {
     if (!options.turntable.empty() && options.frames == 0) options.frames = 72;
     common.Library();  // refuses a folder that is not there
     options.shader_folder = common.glsl;
+    options.cache = common.CacheFolder();
     if (!common.context.empty()) options.context = common.context == "egl" ? ContextKind::kEgl : ContextKind::kOsmesa;
     RunView(options);
   });

@@ -13,11 +13,11 @@
 namespace arealab {
 namespace {
 
-constexpr std::uint64_t kApertureVersion = 1;  // changes whenever the bake's results or the file's layout change
+constexpr std::uint64_t kApertureVersion = 2;  // changes whenever the bake's results or the file's layout change
 
 std::uint64_t Checksum(const Scene& scene) {
   ContentHash hash;
-  for (const Mesh& mesh : scene.meshes) hash.Bytes(mesh.apertures.data(), mesh.apertures.size() * sizeof(glm::vec4));
+  for (const Mesh& mesh : scene.meshes) hash.Bytes(mesh.apertures.data(), mesh.apertures.size() * sizeof(Aperture));
   return hash.low();
 }
 
@@ -27,7 +27,7 @@ bool Read(const std::filesystem::path& file, Scene& scene) {
   for (Mesh& mesh : scene.meshes) {
     mesh.apertures.resize(mesh.vertices.size());
     in.read(reinterpret_cast<char*>(mesh.apertures.data()),
-            static_cast<std::streamsize>(mesh.apertures.size() * sizeof(glm::vec4)));
+            static_cast<std::streamsize>(mesh.apertures.size() * sizeof(Aperture)));
   }
   std::uint64_t checksum = 0;
   in.read(reinterpret_cast<char*>(&checksum), sizeof checksum);
@@ -42,7 +42,7 @@ void Write(const std::filesystem::path& file, const Scene& scene) {
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
   for (const Mesh& mesh : scene.meshes) {
     out.write(reinterpret_cast<const char*>(mesh.apertures.data()),
-              static_cast<std::streamsize>(mesh.apertures.size() * sizeof(glm::vec4)));
+              static_cast<std::streamsize>(mesh.apertures.size() * sizeof(Aperture)));
   }
   const std::uint64_t checksum = Checksum(scene);
   out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);

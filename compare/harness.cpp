@@ -154,6 +154,7 @@ std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pi
   std::vector<glm::vec3> emission(pixels.size(), glm::vec3(0.0f));
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const int kind = static_cast<int>(pixels.position[i].w);
+    if (kind == static_cast<int>(PixelKind::kBackground) && scene.sky) emission[i] = glm::vec3(*scene.sky);
     if (kind < static_cast<int>(PixelKind::kEmitter)) continue;
     const Light& light = scene.lights.at(static_cast<std::size_t>(kind - static_cast<int>(PixelKind::kEmitter)));
     emission[i] = glm::vec3(light.radiance);

@@ -37,7 +37,7 @@ struct CompareOptions {
 // Renders, integrates and measures. Everything in the result is filled but `command`, `version` and `date`.
 Results Compare(Context& context, const ShaderLibrary& library, const CompareOptions& options);
 
-// The radiance of the emitters that the camera sees directly, per pixel.
+// The radiance of the emitters and of the sky that the camera sees directly, per pixel.
 std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pixels);
 
 // One figure of a variant's total error by its name in results.json ("rel_rmse", "bias" without its sign, …).

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 // clang-format off: the order matters
 #include "glsl/dual_begin.h"
 #include "glsl/low_discrepancy.glsl"
@@ -105,7 +106,21 @@ std::optional<LightDirections> LightDirections::From(const glm::dvec3& position,
   return result;
 }
 
+LightDirections LightDirections::Sky(const glm::dvec3& normal) {
+  LightDirections result;
+  result.sky_ = true;
+  const glm::dvec3 other = std::abs(normal.z) < 0.7 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
+  const glm::dvec3 x = glm::normalize(glm::cross(other, normal));
+  result.axis_ = {x, glm::cross(normal, x), normal};
+  result.solid_angle_ = 2.0 * kPi;
+  return result;
+}
+
 LightDirections::Sample LightDirections::At(const glm::dvec2& u) const {
+  if (sky_) {
+    const double radius = std::sqrt(u.x), phi = 2.0 * kPi * u.y, z = std::sqrt(1.0 - u.x);
+    return {World({radius * std::cos(phi), radius * std::sin(phi), z}), std::numeric_limits<double>::infinity(), z / kPi};
+  }
   if (shape_ != LightShape::kRectangle) {
     const double radius = std::sqrt(u.x), phi = 2.0 * kPi * u.y;
     const double x = cone_.sin_1 * radius * std::cos(phi), y = cone_.sin_2 * radius * std::sin(phi);
@@ -139,6 +154,11 @@ LightDirections::Sample LightDirections::At(const glm::dvec2& u) const {
 }
 
 std::optional<LightDirections::Sample> LightDirections::Towards(const glm::dvec3& direction) const {
+  if (sky_) {
+    const double z = glm::dot(direction, axis_[2]);
+    if (z <= 0.0) return std::nullopt;
+    return Sample{direction, std::numeric_limits<double>::infinity(), z / kPi};
+  }
   if (shape_ != LightShape::kRectangle) {
     const double x = glm::dot(direction, cone_.axis_1) / cone_.sin_1,
                  y = glm::dot(direction, cone_.axis_2) / cone_.sin_2, z = glm::dot(direction, cone_.axis_3);

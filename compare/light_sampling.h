@@ -26,6 +26,9 @@ class LightDirections {
   static std::optional<LightDirections> From(const glm::dvec3& position, const glm::dvec3& normal,
                                              const Light& light);
 
+  // All directions above the horizon, as dense as their cosine; nothing is beyond them.
+  static LightDirections Sky(const glm::dvec3& normal);
+
   struct Sample {
     glm::dvec3 direction;  // unit, world
     double distance;       // m, to the light's surface
@@ -64,6 +67,7 @@ class LightDirections {
   // Rectangles: in the axes, from the point: x0 ≤ x ≤ x1, y0 ≤ y ≤ y1, z = −back_.
   double x0_ = 0.0, x1_ = 0.0, y0_ = 0.0, y1_ = 0.0, b0_ = 0.0, b1_ = 0.0, k_ = 0.0;
   bool by_area_ = false;
+  bool sky_ = false;
 };
 
 // Half vectors that the viewer sees, hence reflected directions, of a GGX lobe [Heitz 2018, by the spherical

@@ -28,9 +28,9 @@ glm::dvec3 AsFloats(const glm::dvec3& v) {
   return glm::dvec3(glm::vec3(v));
 }
 
-// Everything on but shapes that no case has, the other side of lights, the loop, and apertures.
+// Everything on but shapes that no case has, the other side of lights, the loop, apertures and the sky.
 EffectDefines EffectsOf(std::span<const PointCase> cases) {
-  std::map<std::string, bool> forced = {{"two_sided", false}, {"many_lights", false}, {"aperture", false}};
+  std::map<std::string, bool> forced = {{"two_sided", false}, {"many_lights", false}, {"aperture", false}, {"sky", false}};
   for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
     forced[Name(shape)] = std::ranges::any_of(cases, [&](const PointCase& c) { return c.shape == shape; });
   }

@@ -24,6 +24,7 @@ namespace {
 
 constexpr std::size_t kGroups = 16;
 constexpr std::uint32_t kFirst = 32, kMost = 512;  // directions of one strategy
+constexpr std::uint32_t kFirstOfSky = 256;  // what is left of a sky behind windows may be little, and is all there is
 constexpr std::uint64_t kSeed = 0xa4ea1ab;          // of everything; any other gives as good a picture
 constexpr double kLightShare = 0.05;  // of the tolerance: how well the lights are integrated one by one
 constexpr double kFarShare = 1.0 - 0x1p-17;  // rays end before the light: a wall may touch it
@@ -54,16 +55,17 @@ class SampledLight {
   // Radiance of the diffuse lobe, and of the specular one with F0 and with 1 − F0: all unshadowed.
   std::array<glm::dvec3, kIntegrals> unshadowed;
 
-  SampledLight(const ShadedPixel& pixel, const Light& light, const LightIntegrals& integrals,
+  SampledLight(const ShadedPixel& pixel, const glm::dvec3& radiance, const LightIntegrals& integrals,
                const LightDirections& directions, std::uint64_t seed)
-      : unshadowed{pixel.albedo * light.radiance * integrals.form_factor,
-                   pixel.specular_weight * pixel.f0 * light.radiance * integrals.specular,
-                   pixel.specular_weight * (1.0 - pixel.f0) * light.radiance * integrals.specular_grazing},
+      : unshadowed{pixel.albedo * radiance * integrals.form_factor,
+                   pixel.specular_weight * pixel.f0 * radiance * integrals.specular,
+                   pixel.specular_weight * (1.0 - pixel.f0) * radiance * integrals.specular_grazing},
         point_(&pixel.point),
         directions_(directions),
         seed_(seed) {
     for (std::size_t k = 0; k < kIntegrals; ++k) {
-      shares_[k] = unshadowed[k].x + unshadowed[k].y + unshadowed[k].z;
+      const glm::dvec3 size = glm::abs(unshadowed[k]);  // a light that is dimmer than the sky takes away
+      shares_[k] = size.x + size.y + size.z;
     }
     const glm::dvec3 &n = point_->normal, &v = point_->to_view;
     z_ = n;
@@ -85,9 +87,9 @@ class SampledLight {
   std::uint32_t count() const { return count_; }
   double variance() const { return variance_; }
 
-  // Twice as many directions, or the first ones; rays begin at `origin`.
-  void Refine(const RayQuery& rays, const glm::dvec3& origin) {
-    const std::uint32_t begin = count_, end = count_ == 0 ? kFirst : 2 * count_;
+  // Twice as many directions, or the `first` ones; rays begin at `origin`.
+  void Refine(const RayQuery& rays, const glm::dvec3& origin, std::uint32_t first = kFirst) {
+    const std::uint32_t begin = count_, end = count_ == 0 ? first : 2 * count_;
     static thread_local Scratch scratch;  // keeps its memory
     scratch.rays.clear();
     scratch.weighted.clear();
@@ -230,6 +232,8 @@ struct ShadowBands {
     if (!pixel || !(total > 0.0)) return;
     lights.clear();
     bool others = false;  // lights that are free
+    bool sky_last = false;  // among those to be sampled
+    const glm::dvec3 sky = scene.sky.value_or(glm::dvec3(0.0));
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {
       const Light& light = scene.lights[l];
       const auto directions = LightDirections::From(pixel->point.position, pixel->point.normal, light);
@@ -240,13 +244,26 @@ struct ShadowBands {
       }
       const LightIntegrals integrals = IntegrateLight(pixel->point, light, light_tolerance);
       if (integrals.form_factor == 0.0 && integrals.specular == 0.0) continue;
-      lights.emplace_back(*pixel, light, integrals, *directions, Mix(Mix(kSeed, i), l));
+      lights.emplace_back(*pixel, light.radiance - sky, integrals, *directions, Mix(Mix(kSeed, i), l));
+    }
+    if (scene.sky) {
+      Shaft above;
+      above.apex = pixel->point.position;
+      above.Add(pixel->point.normal, 0.0);
+      if (rays->MayBlock(above)) {
+        lights.emplace_back(*pixel, sky, IntegrateSky(pixel->point), LightDirections::Sky(pixel->point.normal),
+                            Mix(Mix(kSeed, i), scene.lights.size()));
+        sky_last = true;
+      } else {
+        others = true;
+      }
     }
     if (lights.empty()) return;
     const glm::dvec3 origin = rays->Origin(pixel->point.position, glm::dvec3(pixels.view_position));
+    const SampledLight* sky_light = sky_last ? &lights.back() : nullptr;
     double variance = 0.0;
     for (SampledLight& light : lights) {
-      light.Refine(*rays, origin);
+      light.Refine(*rays, origin, &light == sky_light ? kFirstOfSky : kFirst);
       variance += light.variance();
     }
     const double goal = tolerance * total * tolerance * total;
@@ -273,7 +290,9 @@ struct ShadowBands {
       specular_left += s * whole[kSpecular] + g * whole[kGrazing];
       specular_lost += (1.0 - s) * whole[kSpecular] + (1.0 - g) * whole[kGrazing];
     }
-    // What is left of these lights is a lower bound where others are free, all there is where none are.
+    // What is left of these lights is a lower bound where others are free, all there is where none are; before a sky lights may take
+    // away, and black is the bound.
+    if (scene.sky && others) diffuse_left = specular_left = glm::dvec3(0.0);
     diffuse = glm::vec3(others ? glm::max(glm::dvec3(diffuse) - diffuse_lost, diffuse_left) : diffuse_left);
     specular =
         glm::vec3(others ? glm::max(glm::dvec3(specular) - specular_lost, specular_left) : specular_left);

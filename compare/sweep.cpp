@@ -72,6 +72,17 @@ std::string SceneText(const std::string& axis, double value) {
     if (right > 0.0) text += strip(right, 2.0 - 0.5 * right, -30.0);
     return text + Panel({0.0, 1.6, 0.3}, {0.0, -1.0, 0.0}, {3.0, 1.0});
   }
+  if (axis == "sun") {
+    // Hills of plaster with baked apertures, the sun's course leaning to the south, and a sky that fades with it.
+    const double rise = std::sin(value * degree);
+    return fmt::format(
+        "[aperture]\n[sky]\nradiance = {}\n[camera]\nposition = [0.0, -0.46, 0.26]\ntarget = [0.0, 0.02, 0.01]\nvertical_fov = 40.0\n"
+        "[[material]]\nname = \"plaster\"\nbase_color = 0.4\nroughness = 0.6\n"
+        "[[surface]]\ntype = \"height_field\"\nsize = [0.8, 0.8]\nposition = [0.0, 0.08, 0.0]\nformula = \"waves\"\nheight = 0.06\n"
+        "wavelength = 0.4\ncells = [96, 96]\nmaterial = \"plaster\"\n"
+        "[[light]]\nname = \"sun\"\nshape = \"sphere\"\nposition = [{}, {}, {}]\nradius = 1.0\nradiance = 1000.0\n",
+        0.05 + 0.25 * rise, 40.0 * std::cos(value * degree), -12.0 * rise, 40.0 * rise);
+  }
   return kCamera + MaterialText(0.3) + kFloor + kUsualPanel;  // pixels, samples
 }
 
@@ -124,7 +135,8 @@ const std::vector<SweepAxis>& SweepAxes() {
       {"angle", "view angle from the normal, degrees", false, {5, 15, 25, 35, 45, 55, 65, 75, 80, 85}},
       {"light_size", "side of the square light, m", true, {0.02, 0.05, 0.1, 0.2, 0.5, 1, 2}},
       {"distance", "distance of the light from the floor's middle, m", true, {0.5, 0.7, 1, 1.5, 2, 3, 5, 8}},
-      {"crossing", "share of the floor whose horizon the light crosses", false, {0, 0.25, 0.5, 0.75, 1}}};
+      {"crossing", "share of the floor whose horizon the light crosses", false, {0, 0.25, 0.5, 0.75, 1}},
+      {"sun", "the sun's angle from its rise in the east, degrees", false, {10, 25, 40, 60, 90, 120, 140, 155, 170}}};
   return axes;
 }
 
@@ -140,7 +152,7 @@ const SweepAxis& FindSweepAxis(const std::string& name) {
 SweepPoint MakeSweepPoint(const SweepAxis& axis, double value, glm::ivec2 size) {
   const std::map<std::string, std::pair<double, double>> reach = {
       {"lights", {1, 256}},     {"pixels", {1e-4, 60}},     {"samples", {1, 64}},   {"roughness", {0, 1}},
-      {"angle", {0, 89}},       {"light_size", {1e-3, 4}},  {"distance", {0.1, 100}}, {"crossing", {0, 1}}};
+      {"angle", {0, 89}},       {"light_size", {1e-3, 4}},  {"distance", {0.1, 100}}, {"crossing", {0, 1}}, {"sun", {1, 179}}};
   const auto [low, high] = reach.at(axis.name);
   const bool whole = axis.name != "lights" || value == std::floor(value);
   if (!(value >= low && value <= high) || !whole) {

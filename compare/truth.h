@@ -33,6 +33,10 @@ struct ShadingPoint {
 // gives zeros.
 LightIntegrals IntegrateLight(const ShadingPoint& point, const Light& light, double tolerance);
 
+// What the whole sky of unit radiance does to it: form factor 1, the lobe's energy by the quadrature that the tables are fitted
+// with; errors are what half as fine a rule differs by.
+LightIntegrals IntegrateSky(const ShadingPoint& point);
+
 struct Truth {
   RadianceImage radiance;
   std::vector<float> relative_error;  // per pixel, of the total; 0 where nothing is lit
@@ -46,7 +50,8 @@ struct TruthOptions {
   std::function<void(double)> progress;  // fraction done in [0, 1]; may be empty; called from one thread
 };
 
-// Unshadowed truth of every surface pixel. Same bits on any number of threads.
+// Unshadowed truth of every surface pixel. Lights hide each the sky behind them, from their lit sides; the dark side of a light is
+// not there. Same bits on any number of threads.
 Truth ComputeTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options = {});
 
 }  // namespace arealab

@@ -125,6 +125,7 @@ void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels
   hash.Value(pixels.height);
   AddVector(hash, glm::dvec3(pixels.view_position));
   if (scene.brdf != Brdf::kGgx) hash.Value(scene.brdf);  // left out, the default's truths keep their names
+  if (scene.sky) AddVector(hash, *scene.sky);
   for (const Light& light : scene.lights) {
     hash.Value(light.shape);
     hash.Value(light.two_sided);

@@ -11,6 +11,9 @@ uniform vec4 surface_material;  // diffuse albedo; w: roughness
 uniform vec4 surface_f0;
 #if EFFECT_APERTURE
 uniform vec4 surface_aperture;
+uniform vec4 surface_first_region;
+uniform vec4 surface_second_region;
+uniform vec4 surface_blocked;
 #endif
 
 void main() {
@@ -23,6 +26,9 @@ void main() {
   surface.f0 = surface_f0.xyz;
 #if EFFECT_APERTURE
   surface.aperture = surface_aperture;
+  surface.first_region = surface_first_region;
+  surface.second_region = surface_second_region;
+  surface.blocked = surface_blocked;
 #endif
   Radiance radiance = ShadeLight(surface, LoadLight(0), normalize(ViewPosition() - surface_position));
   vec3 sum = vec3(0.0);

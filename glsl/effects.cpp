@@ -196,6 +196,7 @@ class Analysis {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       if (!IsGrey(lights_[i].radiance)) return {true, Called(lights_[i], i) + " is coloured"};
     }
+    if (scene_.sky && !IsGrey(*scene_.sky)) return {true, "the sky is coloured"};
     return {false, "every light is white"};
   }
 
@@ -210,6 +211,11 @@ class Analysis {
   Verdict Aperture() const {
     if (scene_.aperture) return {true, "the scene asks for visibility, baked into apertures"};
     return {false, "the scene asks for no visibility"};
+  }
+
+  Verdict Sky() const {
+    if (scene_.sky) return {true, "the scene has a sky"};
+    return {false, "the scene has no sky"};
   }
 
   Verdict ManyLights() const {
@@ -327,6 +333,7 @@ constexpr Rule kRules[] = {
     {"light_color", [](Analysis& scene) { return scene.LightColor(); }},
     {"material_color", [](Analysis& scene) { return scene.MaterialColor(); }},
     {"aperture", [](Analysis& scene) { return scene.Aperture(); }},
+    {"sky", [](Analysis& scene) { return scene.Sky(); }},
     {"many_lights", [](Analysis& scene) { return scene.ManyLights(); }},
 };
 

@@ -116,6 +116,8 @@ class Expander {
     }
   }
 
+  bool Takes(const char* effect) const { return std::ranges::find(variant_.technique->effects, effect) != variant_.technique->effects.end(); }
+
   // The library's name for what an #include says.
   std::string Resolve(const std::string& name) const {
     if (name == "platform") {
@@ -123,10 +125,9 @@ class Expander {
     }
     if (name == "brdf" || name == "importance_cone") return fmt::format("{}/{}.glsl", name, Name(brdf_));
     if (!variant_.technique) return name;
-    if (name == "visibility") {
-      const std::vector<std::string>& taken = variant_.technique->effects;
-      return std::ranges::find(taken, "aperture") != taken.end() ? "visibility/own.glsl" : "visibility/aperture.glsl";
-    }
+    // What the pass does where the technique does not take it itself.
+    if (name == "visibility") return Takes("aperture") ? "visibility/own.glsl" : "visibility/aperture.glsl";
+    if (name == "sky") return Takes("sky") ? "sky/own.glsl" : "sky/fill.glsl";
     if (name == "technique") return fmt::format("techniques/{}.glsl", variant_.technique->name);
     const auto option = variant_.options.find(name);
     return option == variant_.options.end() ? name : fmt::format("{}/{}.glsl", name, option->second);

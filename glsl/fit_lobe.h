@@ -1,5 +1,6 @@
 // The reflection lobe that the fitted tables approximate, in the local frame normal = +z, viewer = (sin θ, 0,
-// cos θ), and quadrature rules that follow its peak. Internal to the fit; the public interface is glsl/fit.h.
+// cos θ), and quadrature rules that follow its peak: the fit's and the sky's (compare/truth.h). The fit's public interface is
+// glsl/fit.h.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -29,6 +29,7 @@ constexpr int kSphereSegments = 128;
 
 // gbuffer.frag reads vertices as 12 floats in this order.
 static_assert(sizeof(Vertex) == 12 * sizeof(float));
+static_assert(sizeof(Aperture) == GBuffer::kCaps * sizeof(glm::vec4));
 
 struct CameraView {
   glm::dvec3 position;  // m, world: what float holds of the camera's, so that everyone means the same point
@@ -152,7 +153,7 @@ struct GBuffer::Geometry {
   using TextureSet = std::array<std::shared_ptr<const Image>, 3>;  // colour, metalness and roughness, normals
 
   std::vector<Vertex> vertices;
-  std::vector<glm::vec4> apertures;    // one per vertex, or none at all
+  std::vector<Aperture> apertures;     // one per vertex, or none at all
   std::vector<std::uint32_t> indices;  // into `vertices`
   std::vector<Range> ranges;           // one per draw
   std::vector<DrawEntry> draws;
@@ -249,7 +250,7 @@ void GBuffer::Allocate(glm::ivec2 size) {
   position_ = MakeTexture(gl_, GL_RGBA32F, 1, size);
   normal_ = MakeTexture(gl_, GL_RGBA32F, 1, size);
   base_color_ = MakeTexture(gl_, GL_RGBA32F, 1, size);
-  aperture_ = {};
+  apertures_ = {};
   const GLuint fbo = framebuffer_.id();
   gl_.NamedFramebufferTexture(fbo, GL_COLOR_ATTACHMENT0, position_.id(), 0);
   gl_.NamedFramebufferTexture(fbo, GL_COLOR_ATTACHMENT1, normal_.id(), 0);
@@ -316,7 +317,7 @@ const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
       MakeBuffer(gl_, std::max<std::size_t>(geometry.indices.size(), 1) * sizeof(std::uint32_t),
                  geometry.indices.empty() ? nullptr : geometry.indices.data());
   const GlObject apertures =
-      MakeBuffer(gl_, std::max<std::size_t>(geometry.apertures.size(), 1) * sizeof(glm::vec4),
+      MakeBuffer(gl_, std::max<std::size_t>(geometry.apertures.size(), 1) * sizeof(Aperture),
                  geometry.apertures.empty() ? nullptr : geometry.apertures.data());
   const GlObject draws = MakeBuffer(gl_, std::max<std::size_t>(geometry.draws.size(), 1) * sizeof(DrawEntry),
                                     geometry.draws.empty() ? nullptr : geometry.draws.data());
@@ -387,11 +388,15 @@ void GBuffer::Resolve(const Geometry& geometry) {
   earlier.clear();
 
   const bool apertures = !geometry.apertures.empty();
-  if (apertures && aperture_.id() == 0) aperture_ = MakeTexture(gl_, GL_RGBA32F, 1, {pixels_.width, pixels_.height});
-  const std::array<GLenum, 4> targets{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
-                                      GL_COLOR_ATTACHMENT3};
-  const GLint target_count = apertures ? 4 : 3;
-  gl_.NamedFramebufferTexture(framebuffer_.id(), GL_COLOR_ATTACHMENT3, apertures ? aperture_.id() : 0, 0);
+  if (apertures && apertures_[0].id() == 0) {
+    for (GlObject& cap : apertures_) cap = MakeTexture(gl_, GL_RGBA32F, 1, {pixels_.width, pixels_.height});
+  }
+  std::array<GLenum, 3 + kCaps> targets;
+  for (std::size_t i = 0; i < targets.size(); ++i) targets[i] = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i);
+  const GLint target_count = apertures ? static_cast<GLint>(targets.size()) : 3;
+  for (std::size_t i = 0; i < kCaps; ++i) {
+    gl_.NamedFramebufferTexture(framebuffer_.id(), targets[3 + i], apertures ? apertures_[i].id() : 0, 0);
+  }
   gl_.NamedFramebufferDrawBuffers(framebuffer_.id(), target_count, targets.data());
   const Program& program = ResolveProgram(apertures);
   const CameraView& view = geometry.view;
@@ -449,7 +454,7 @@ void GBuffer::ReadBack() {
   read(position_, pixels_.position);
   read(normal_, pixels_.normal);
   read(base_color_, pixels_.base_color);
-  if (!pixels_.aperture.empty()) read(aperture_, pixels_.aperture);
+  if (!pixels_.aperture.empty()) read(apertures_[0], pixels_.aperture);
 }
 
 }  // namespace arealab

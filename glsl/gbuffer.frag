@@ -7,7 +7,10 @@ layout(location = 1) out vec4 out_normal;      // unit shading normal; w: artist
 layout(location = 2) out vec4 out_base_color;  // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
 #if EFFECT_APERTURE
-layout(location = 3) out vec4 out_aperture;    // unit axis; w: versine
+layout(location = 3) out vec4 out_aperture;       // caps, each a unit axis; w: versine
+layout(location = 4) out vec4 out_first_region;
+layout(location = 5) out vec4 out_second_region;
+layout(location = 6) out vec4 out_blocked;
 #endif
 
 // One draw, as gbuffer.cpp writes it.
@@ -30,7 +33,7 @@ layout(binding = 4) uniform samplerBuffer vertices;  // a Corner in three texels
 layout(binding = 5) uniform usamplerBuffer indices;
 layout(binding = 6) uniform samplerBuffer draws;     // a Draw in three texels
 #if EFFECT_APERTURE
-layout(binding = 7) uniform samplerBuffer apertures;  // a vertex's cap: unit axis, versine
+layout(binding = 7) uniform samplerBuffer apertures;  // a vertex's four caps: unit axis, versine
 #endif
 
 layout(binding = 0) uniform usampler2D coverage;
@@ -59,7 +62,18 @@ Corner CornerAt(uint i) {
 }
 
 #if EFFECT_APERTURE
-vec4 ApertureAt(uint i) { return texelFetch(apertures, int(texelFetch(indices, int(i)).x)); }
+vec4 CapAt(uint i, int cap) { return texelFetch(apertures, 4 * int(texelFetch(indices, int(i)).x) + cap); }
+
+// A cap between the corners' own. Axes count by `by_size` of what their caps cover: an empty cap has no direction to speak of.
+vec4 MixCaps(uint first, vec3 weight, int cap, bool by_size, vec3 otherwise) {
+  vec4 a = CapAt(first, cap);
+  vec4 b = CapAt(first + 1u, cap);
+  vec4 c = CapAt(first + 2u, cap);
+  vec3 axis = by_size ? weight.x * a.w * a.xyz + weight.y * b.w * b.xyz + weight.z * c.w * c.xyz
+                      : weight.x * a.xyz + weight.y * b.xyz + weight.z * c.xyz;
+  float axis_length = length(axis);
+  return vec4(axis_length > 0.0 ? axis / axis_length : otherwise, weight.x * a.w + weight.y * b.w + weight.z * c.w);
+}
 #endif
 
 // A triangle: one corner and the edges to the two others.
@@ -168,9 +182,11 @@ void main() {
   }
 
 #if EFFECT_APERTURE
-  vec4 cap = float(weight_a) * ApertureAt(first) + float(weight.x) * ApertureAt(first + 1u) + float(weight.y) * ApertureAt(first + 2u);
-  float cap_length = length(cap.xyz);
-  out_aperture = vec4(cap_length > 0.0 ? cap.xyz / cap_length : vec3(normal), cap.w);
+  vec3 weights = vec3(dvec3(weight_a, weight));
+  out_aperture = MixCaps(first, weights, 0, false, vec3(normal));
+  out_first_region = MixCaps(first, weights, 1, true, vec3(normal));
+  out_second_region = MixCaps(first, weights, 2, true, vec3(normal));
+  out_blocked = MixCaps(first, weights, 3, true, vec3(normal));
 #endif
   out_position = vec4(vec3(position), draw.kind);
   out_normal = vec4(vec3(normal), clamp(rough, 0.0, 1.0));

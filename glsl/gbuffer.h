@@ -27,7 +27,9 @@ class GBuffer {
   GLuint position() const { return position_.id(); }  // textures, RGBA32F, as SurfacePixels has them
   GLuint normal() const { return normal_.id(); }
   GLuint base_color() const { return base_color_.id(); }
-  GLuint aperture() const { return pixels_.aperture.empty() ? 0 : aperture_.id(); }
+  // A cap's: 0 what is open, 1 and 2 its regions, 3 what is blocked; 0 where none was baked.
+  GLuint aperture(std::size_t cap) const { return pixels_.aperture.empty() ? 0 : apertures_[cap].id(); }
+  static constexpr std::size_t kCaps = 4;
 
  private:
   struct Geometry;  // the scene's triangles and what is drawn of them
@@ -48,7 +50,8 @@ class GBuffer {
   GlObject vertex_array_;
   GlObject coverage_framebuffer_, framebuffer_;
   GlObject coverage_, depth_;
-  GlObject position_, normal_, base_color_, aperture_;
+  GlObject position_, normal_, base_color_;
+  std::array<GlObject, kCaps> apertures_;
   std::map<std::shared_ptr<const Image>, GlObject> textures_;  // of the scene drawn last
   SurfacePixels pixels_;
 };

@@ -4,13 +4,18 @@
 #include "lights.glsl"
 #include "lit.glsl"
 #include "technique"
-#if EFFECT_APERTURE
+#if EFFECT_APERTURE || EFFECT_SKY
+// In one condition: what both include is included once.
 #include "visibility"
+#include "sky"
 #endif
 
 void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout vec3 specular) {
   Light light = LoadLight(i);
   if (!Lit(FaceLight(light, surface.position))) return;
+#if EFFECT_SKY
+  light.radiance = BeforeSky(light.radiance);
+#endif
   Radiance radiance = ShadeLight(surface, light, to_view);
 #if EFFECT_APERTURE
   float visible = Visibility(surface, light);
@@ -57,12 +62,27 @@ void main() {
       surface.f0 = mix(vec3(0.04), base_color.rgb, metalness);
 #if EFFECT_APERTURE
       surface.aperture = FetchAperture(pixel);
-      if (surface.aperture.xyz == vec3(0.0)) surface.aperture = vec4(surface.normal, 1.0);
+      surface.first_region = FetchFirstRegion(pixel);
+      surface.second_region = FetchSecondRegion(pixel);
+      surface.blocked = FetchBlocked(pixel);
+      if (surface.aperture.xyz == vec3(0.0)) {  // nothing was baked: all is open
+        surface.aperture = surface.first_region = vec4(surface.normal, 1.0);
+        surface.second_region = surface.blocked = vec4(surface.normal, 0.0);
+      }
 #endif
 #if EFFECT_MANY_LIGHTS
       for (int i = 0; i < light_count; ++i) AddLight(i, surface, to_view, diffuse, specular);
 #else
       AddLight(0, surface, to_view, diffuse, specular);
+#endif
+#if EFFECT_SKY
+      Radiance sky = ShadeSky(surface, to_view);
+#if EFFECT_DIFFUSE
+      diffuse += sky.diffuse;
+#endif
+#if EFFECT_SPECULAR
+      specular += sky.specular;
+#endif
 #endif
 #if EFFECT_SPECULAR_WEIGHT
       specular *= 1.0 + min(base_color.w, 0.0);

@@ -17,7 +17,7 @@ struct SurfacePixels {
   std::vector<glm::vec4> normal;     // unit shading normal (its plane is the horizon); w: artist's roughness
   std::vector<glm::vec4> base_color; // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
-  std::vector<glm::vec4> aperture;   // unit axis, versine, see scenes/bake.h; empty where none was baked
+  std::vector<glm::vec4> aperture;   // of what is open: unit axis, versine, see scenes/bake.h; empty where none was baked
 
   std::size_t size() const { return position.size(); }
   bool IsSurface(std::size_t i) const { return position[i].w == 1.0f; }

@@ -8,8 +8,14 @@ dvec4 FetchNormal(ivec2 pixel) { return dvec4(texelFetch(gbuffer_normal, pixel, 
 dvec4 FetchBaseColor(ivec2 pixel) { return dvec4(texelFetch(gbuffer_base_color, pixel, 0)); }
 #if EFFECT_APERTURE
 dvec4 FetchAperture(ivec2 pixel) { return dvec4(texelFetch(gbuffer_aperture, pixel, 0)); }
+dvec4 FetchFirstRegion(ivec2 pixel) { return dvec4(texelFetch(gbuffer_first_region, pixel, 0)); }
+dvec4 FetchSecondRegion(ivec2 pixel) { return dvec4(texelFetch(gbuffer_second_region, pixel, 0)); }
+dvec4 FetchBlocked(ivec2 pixel) { return dvec4(texelFetch(gbuffer_blocked, pixel, 0)); }
 #endif
 dvec3 ViewPosition() { return dvec3(view_position); }
+#if EFFECT_SKY
+dvec3 SkyInput() { return dvec3(sky_radiance); }
+#endif
 dvec4 LightRow(int light, int row) { return dvec4(light_rows[light * LIGHT_ROWS + row]); }
 
 // Bilinear, clamped to the edge; texel (i, j)'s centre is uv = (i + ½, j + ½) / size. By hand: samplers weigh in float.

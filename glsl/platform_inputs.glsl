@@ -6,7 +6,11 @@ layout(binding = 1) uniform sampler2D gbuffer_normal;      // unit; w: artist's 
 layout(binding = 2) uniform sampler2D gbuffer_base_color;  // linear sRGB; w: metalness, or below 0 a non-metal whose specular lobe weighs 1 + w
 
 #if EFFECT_APERTURE
-layout(binding = 14) uniform sampler2D gbuffer_aperture;   // unit axis; w: versine; 0 where nothing was baked
+// Caps of directions, each a unit axis and (w) a versine; 0 where nothing was baked.
+layout(binding = 14) uniform sampler2D gbuffer_aperture;       // that meet no surface
+layout(binding = 13) uniform sampler2D gbuffer_first_region;   // the two largest contiguous regions of these
+layout(binding = 12) uniform sampler2D gbuffer_second_region;
+layout(binding = 11) uniform sampler2D gbuffer_blocked;        // that meet one
 #endif
 
 #define MAX_LIGHTS 256
@@ -17,6 +21,9 @@ layout(std140, binding = 0) uniform LightBlock {
 
 uniform vec3 view_position;  // m, world
 uniform int light_count;
+#if EFFECT_SKY
+uniform vec3 sky_radiance;  // from every direction, in the lights' unit
+#endif
 
 layout(location = 0) out vec4 out_diffuse;
 layout(location = 1) out vec4 out_specular;

@@ -18,7 +18,7 @@
 namespace arealab {
 namespace {
 
-constexpr GLuint kApertureUnit = 14;  // see glsl/platform_inputs.glsl
+constexpr GLuint kApertureUnits[] = {14, 13, 12, 11};  // see glsl/platform_inputs.glsl
 constexpr GLuint kFirstTableUnit = 3;  // after the G-buffer's three, see glsl/platform_inputs.glsl
 
 }  // namespace
@@ -157,6 +157,7 @@ const Renderer::Impl::Pass& Renderer::Impl::KeptPass(const Variant& variant, Pre
 void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) const {
   pass.program->Set("view_position", gbuffer.pixels().view_position);
   pass.program->Set("light_count", light_count);
+  pass.program->Set("sky_radiance", glm::vec3(scene.sky.value_or(glm::dvec3(0.0))));
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
   gl.Viewport(0, 0, size.x, size.y);
   for (const GLenum capability : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_DEPTH_TEST}) {
@@ -169,7 +170,7 @@ void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) const {
   gl.BindTextureUnit(0, gbuffer.position());
   gl.BindTextureUnit(1, gbuffer.normal());
   gl.BindTextureUnit(2, gbuffer.base_color());
-  gl.BindTextureUnit(kApertureUnit, gbuffer.aperture());
+  for (std::size_t cap = 0; cap < GBuffer::kCaps; ++cap) gl.BindTextureUnit(kApertureUnits[cap], gbuffer.aperture(cap));
   for (std::size_t i = 0; i < pass.tables.size(); ++i) {
     gl.BindTextureUnit(kFirstTableUnit + static_cast<GLuint>(i), pass.tables[i]);
   }
@@ -222,6 +223,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   impl_->light_count = static_cast<int>(lights.size());
   impl_->scene.name = scene.name;
   impl_->scene.brdf = scene.brdf;
+  impl_->scene.sky = scene.sky;
   impl_->scene.lights = scene.lights;
   impl_->scene.materials = scene.materials;
   impl_->effects = SceneEffects(scene);

@@ -11,7 +11,11 @@ struct Surface {
   vec3 diffuse_albedo;  // base · (1 − metalness)
   vec3 f0;              // reflectance at normal incidence: mix(0.04, base, metalness)
 #if EFFECT_APERTURE
-  vec4 aperture;        // the cap of directions that meet no surface: unit axis; w: versine, 1 − cos of its radius
+  // Caps of directions, each a unit axis; w: versine, 1 − cos of the radius.
+  vec4 aperture;        // that meet no surface
+  vec4 first_region;    // the two largest contiguous regions of these
+  vec4 second_region;
+  vec4 blocked;         // that meet one
 #endif
 };
 

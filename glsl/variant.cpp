@@ -133,6 +133,9 @@ constexpr Need kNeeds[] = {
     {"fresnel", "a Fresnel term; the scene's materials reflect less than all light"},
 };
 
+// The only BRDF of which the reflection of a whole sky is known to the shading text: glsl/specular_albedo.glsl.
+constexpr Brdf kSkyBrdf = Brdf::kGgx;
+
 }  // namespace
 
 std::string Variant::Name() const {
@@ -167,6 +170,7 @@ Variant WithAllEffects(Variant variant) {
   const Technique& technique = *variant.technique;
   for (const std::string& effect : EffectNames()) variant.effects[effect] = true;
   variant.effects.erase("aperture");
+  variant.effects.erase("sky");
   for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
     if (std::ranges::find(technique.shapes, shape) == technique.shapes.end()) variant.effects.erase(Name(shape));
   }
@@ -316,6 +320,9 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
     }
   }
   const Technique& technique = *variant.technique;
+  if (scene.brdf != kSkyBrdf && calls_for("sky") && calls_for("specular")) {
+    return fmt::format("{} reflects a sky by the BRDF {} alone; the scene's is {}", technique.name, Name(kSkyBrdf), brdf);
+  }
   for (const Need& need : kNeeds) {
     if (std::ranges::find(technique.effects, need.effect) != technique.effects.end()) continue;
     const auto forced = variant.effects.find(need.effect);

@@ -33,7 +33,7 @@ Variant PublishedVariant(const Technique& technique);
 Variant IdealVariant(const Variant& variant);
 
 // The variant with every effect forced on that its technique takes; shapes are left to the scene where it does not do them,
-// apertures always: without them there is nothing to look at.
+// apertures and the sky always: without them there is nothing to look at.
 Variant WithAllEffects(Variant variant);
 
 // Reads "ltc", "ltc@published", "ltc+clip=switch", "ltc@published+edge=acos". Throws InputError that lists what exists.

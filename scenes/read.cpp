@@ -266,7 +266,7 @@ class SceneReader {
                  fmt::format("{}; expected valid TOML", error.description()));
     }
     const Fields root(file_, root_table, "the scene");
-    root.Allow({"units", "exposure", "brdf", "aperture", "camera", "material", "surface", "light"});
+    root.Allow({"units", "exposure", "brdf", "aperture", "sky", "camera", "material", "surface", "light"});
     scene_.units = root.Word("units", {"radiometric", "photometric"}, "radiometric") == "photometric"
                        ? Units::kPhotometric
                        : Units::kRadiometric;
@@ -276,6 +276,7 @@ class SceneReader {
     const std::string brdf = root.Word("brdf", brdfs, Name(Brdf::kGgx));
     scene_.brdf = kBrdfs[std::find(brdfs.begin(), brdfs.end(), brdf) - brdfs.begin()];
     ReadAperture(root);
+    ReadSky(root);
     ReadCamera(root);
     for (const Fields& fields : Tables(root, "material")) ReadMaterial(fields);
     const std::vector<Fields> surfaces = Tables(root, "surface");
@@ -323,6 +324,21 @@ class SceneReader {
     settings.rays = static_cast<int>(rays);
     if (settings.rays != rays) fields.Fail(*fields.Find("rays"), fmt::format("'rays' is not whole; expected {}", kApertureRays.expected));
     if (fields.Find("cell")) settings.cell = fields.Number("cell", kLength, 0.0);
+  }
+
+  void ReadSky(const Fields& root) {
+    const toml::node* node = root.Find("sky");
+    if (!node) return;
+    const toml::table* table = node->as_table();
+    if (!table) root.FailType(*node, "sky", "a table [sky]");
+    const Fields fields(file_, *table, "[sky]");
+    const char* key = scene_.units == Units::kPhotometric ? "luminance" : "radiance";
+    fields.Allow({"radiance", "luminance", "color"});
+    RefuseOtherUnits(fields, fmt::format("'{}'", key));
+    const toml::node& density = fields.Require(key, kRadiance.expected);
+    const glm::dvec3 radiance = ReadDensity(fields, key, density);
+    if (!(Luminance(radiance) > 0.0)) fields.Fail(density, fmt::format("[sky] emits nothing; expected {}", kRadiance.expected));
+    scene_.sky = radiance;
   }
 
   // The largest side of a plane's or box's cells, m.
@@ -725,20 +741,44 @@ class SceneReader {
     light.axis_y = glm::cross(light.normal, light.axis_x);
   }
 
-  void ReadEmission(const Fields& fields, Light& light) const {
+  // Quantities of the units that the scene has not.
+  void RefuseOtherUnits(const Fields& fields, const std::string& expected) const {
     const bool photometric = scene_.units == Units::kPhotometric;
-    const char* per_area = photometric ? "luminance" : "radiance";
-    const char* total = photometric ? "luminous_flux" : "flux";
     const char* own = photometric ? "photometric" : "radiometric";
     const char* other = photometric ? "radiometric" : "photometric";
     for (const char* wrong :
          {photometric ? "radiance" : "luminance", photometric ? "flux" : "luminous_flux"}) {
       if (const toml::node* node = fields.Find(wrong)) {
-        fields.Fail(*node,
-                    fmt::format("'{}' is a {} quantity and this scene's units are {}; expected '{}' or '{}'",
-                                wrong, other, own, per_area, total));
+        fields.Fail(*node, fmt::format("'{}' is a {} quantity and this scene's units are {}; expected {}", wrong,
+                                       other, own, expected));
       }
     }
+  }
+
+  // The colour gives the hue alone: the luminance-weighted value is what the file states.
+  static glm::dvec3 Colored(const Fields& fields, double value) {
+    const glm::dvec3 color = fields.Numbers<3>("color", kColor, glm::dvec3(1.0));
+    if (!(Luminance(color) > 0.0)) {
+      fields.Fail(*fields.Find("color"),
+                  fmt::format("{}'s color is black; expected {}", fields.title() == "[sky]" ? "the sky" : "the light", kColor.expected));
+    }
+    return color / Luminance(color) * value;
+  }
+
+  // Radiance or luminance: three numbers, or one and a color.
+  static glm::dvec3 ReadDensity(const Fields& fields, const char* key, const toml::node& density) {
+    if (!density.is_array()) return Colored(fields, fields.Number(density, key, kRadiance));
+    if (const toml::node* color = fields.Find("color")) {
+      fields.Fail(*color, fmt::format("'color' stands beside three numbers of '{}'; expected one or the other", key));
+    }
+    return fields.Numbers<3>(density, key, kRadiance);
+  }
+
+  void ReadEmission(const Fields& fields, Light& light) const {
+    const bool photometric = scene_.units == Units::kPhotometric;
+    const char* per_area = photometric ? "luminance" : "radiance";
+    const char* total = photometric ? "luminous_flux" : "flux";
+    RefuseOtherUnits(fields, fmt::format("'{}' or '{}'", per_area, total));
     const toml::node* density = fields.Find(per_area);
     const toml::node* flux = fields.Find(total);
     if (!density == !flux) {
@@ -746,23 +786,11 @@ class SceneReader {
                                            density ? "both" : "neither of", per_area, total);
       flux ? fields.Fail(*flux, what) : fields.Fail(what);
     }
-    const toml::node* color_node = fields.Find("color");
     const toml::node& node = density ? *density : *flux;
-    if (density && density->is_array()) {
-      if (color_node) {
-        fields.Fail(
-            *color_node,
-            fmt::format("'color' stands beside three numbers of '{}'; expected one or the other", per_area));
-      }
-      light.radiance = fields.Numbers<3>(*density, per_area, kRadiance);
+    if (density) {
+      light.radiance = ReadDensity(fields, per_area, *density);
     } else {
-      const double value = fields.Number(node, density ? per_area : total, density ? kRadiance : kFlux);
-      const glm::dvec3 color = fields.Numbers<3>("color", kColor, glm::dvec3(1.0));
-      if (!(Luminance(color) > 0.0))
-        fields.Fail(*color_node, fmt::format("the light's color is black; expected {}", kColor.expected));
-      // The colour gives the hue alone: the luminance-weighted radiance is what the file states.
-      light.radiance =
-          color / Luminance(color) * (density ? value : value / (glm::pi<double>() * light.Area()));
+      light.radiance = Colored(fields, fields.Number(*flux, total, kFlux) / (glm::pi<double>() * light.Area()));
     }
     if (!(Luminance(light.radiance) > 0.0)) {
       fields.Fail(node, fmt::format("{} emits nothing; expected {}", fields.title(), kRadiance.expected));

@@ -2,6 +2,7 @@
 // linear sRGB.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -75,10 +76,19 @@ struct Vertex {
   glm::vec2 uv;        // glTF: (0, 0) is the top left corner of a texture; textures repeat
 };
 
+// What a vertex sees of its hemisphere, as spherical caps, each a unit axis and the versine 1 − cos of its radius; how they are
+// found: scenes/bake.h. The first is the ambient aperture [Oat 2006], the others what he suggests to go further with.
+struct Aperture {
+  glm::vec4 open;                   // all that is open
+  std::array<glm::vec4, 2> region;  // the two largest contiguous regions of it; the second may be empty
+  glm::vec4 blocked;                // what is not: an "anti-aperture"
+  bool operator==(const Aperture&) const = default;
+};
+
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise seen from outside
-  std::vector<glm::vec4> apertures;    // one per vertex once baked, see scenes/bake.h; else none
+  std::vector<Aperture> apertures;     // one per vertex once baked, else none
   int material = 0;                    // index into Scene::materials
 };
 
@@ -107,6 +117,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Light> lights;
   std::optional<ApertureSettings> aperture;  // where the scene calls for visibility
+  std::optional<glm::dvec3> sky;             // radiance from every direction, in the scene's unit, behind all lights
 };
 
 // Reads and checks a scene file. Throws InputError ("file:line: what; expected what").

@@ -298,6 +298,7 @@ std::optional<std::string> Lost(const Scene& read, const Scene& after) {
     if (found == nullptr || !SameMaterial(*found, material)) return fmt::format("the material '{}'", material.name);
   }
   if (!Close(read.exposure, after.exposure)) return "the exposure";
+  if (read.sky != after.sky) return "the sky";
   return std::nullopt;
 }
 

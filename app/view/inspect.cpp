@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "compare/shadowed_truth.h"
 #include "compare/truth.h"
 
 namespace arealab {
@@ -65,9 +67,14 @@ Inspection InspectPixel(const Scene& scene, const SurfacePixels& pixels, std::si
     }
   }
   if (inspection.clipping.empty()) inspection.clipping = fmt::format("{} lights", scene.lights.size());
-  const RadianceImage& radiance = truth.radiance;
-  inspection.truth = glm::dvec3(lobe == Lobe::kTotal ? radiance.Total(0) : lobe == Lobe::kDiffuse ? radiance.diffuse[0] : radiance.specular[0]);
+  RadianceImage radiance = truth.radiance;
   inspection.truth_error = truth.relative_error[0];
+  if (scene.aperture) {  // techniques have visibility there
+    ShadowedTruth shadowed = ComputeShadowedTruth(scene, one, truth.radiance, {});
+    radiance = std::move(shadowed.radiance);
+    inspection.truth_error = std::max(inspection.truth_error, static_cast<double>(shadowed.relative_error[0]));
+  }
+  inspection.truth = glm::dvec3(lobe == Lobe::kTotal ? radiance.Total(0) : lobe == Lobe::kDiffuse ? radiance.diffuse[0] : radiance.specular[0]);
   return inspection;
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "compare/aperture_cache.h"
 #include "scenes/error.h"
 #include "scenes/write.h"
 
@@ -231,9 +232,15 @@ Opened MeshScene(const fs::path& mesh) {
 
 }  // namespace
 
-Opened OpenScene(const std::string& name_or_path) {
+Opened OpenScene(const std::string& name_or_path, const fs::path& cache) {
   if (IsMesh(name_or_path) && fs::is_regular_file(name_or_path)) return MeshScene(name_or_path);
-  return {LoadScene(FindScene(name_or_path)), ""};
+  return {LoadWithApertures(FindScene(name_or_path), cache), ""};
+}
+
+Scene LoadWithApertures(const fs::path& file, const fs::path& cache) {
+  Scene scene = LoadScene(file);
+  CachedApertures(scene, cache);
+  return scene;
 }
 
 std::filesystem::path ConfigFolder() {

@@ -115,7 +115,11 @@ class Session {
 
 // A built-in name, a scene file, or a mesh alone, which gets a floor, a camera that frames it and a softbox. Throws
 // InputError.
-Opened OpenScene(const std::string& name_or_path);
+// cache: the folder of apertures already baked.
+Opened OpenScene(const std::string& name_or_path, const std::filesystem::path& cache);
+
+// A scene file with its apertures, where it asks for them.
+Scene LoadWithApertures(const std::filesystem::path& file, const std::filesystem::path& cache);
 
 // $XDG_CONFIG_HOME/arealab or ~/.config/arealab; made where it is missing; empty where that fails.
 std::filesystem::path ConfigFolder();

@@ -257,7 +257,7 @@ class View {
       Say("the scene file has changed on disk; undo your edits or save over it");
       return;
     }
-    loading_ = std::async(std::launch::async, [file = session_.scene.file] { return LoadScene(file); });
+    loading_ = std::async(std::launch::async, [file = session_.scene.file, cache = options_.cache] { return LoadWithApertures(file, cache); });
   }
 
   void Frame() {
@@ -809,7 +809,7 @@ void ChoosePanes(const ViewOptions& options, Session& session) {
 }  // namespace
 
 void RunView(const ViewOptions& options) {
-  Opened opened = OpenScene(options.scene);
+  Opened opened = OpenScene(options.scene, options.cache);
   const GlfwLibrary glfw;
   Remembered remembered = Remembered::Load();
   Worker worker(options.context, options.shader_folder, [] { glfwPostEmptyEvent(); });

@@ -15,6 +15,7 @@ struct ViewOptions {
   std::string scene;                   // a built-in name, a scene file, or a mesh file alone
   std::optional<ContextKind> context;  // that shades; the window's own is the display's
   std::filesystem::path shader_folder;
+  std::filesystem::path cache;          // folder of apertures already baked
   std::optional<glm::ivec2> size;       // px of the window; else as it was last, else 1280×720
   std::vector<std::string> techniques;  // A, B, C, D
   std::string layout;                   // "single", "wipe", "difference", "flicker", "grid"; empty: by the techniques

@@ -10,6 +10,7 @@
 #include "compare/subprocess.h"
 #include "glsl/light_block.h"
 #include "glsl/renderer.h"
+#include "scenes/bake.h"
 #include "tests/compare/stranger.h"
 #include "tests/glsl/temporary_folder.h"
 
@@ -41,6 +42,15 @@ Drawn DrawOneLight(const GladGLContext& gl, const ShaderLibrary& library, const 
   drawn.input.gbuffer = {{"gbuffer_position", Floats(pixels.position)},
                          {"gbuffer_normal", Floats(pixels.normal)},
                          {"gbuffer_base_color", Floats(pixels.base_color)}};
+  if (!pixels.aperture.empty()) {
+    drawn.input.gbuffer["gbuffer_aperture"] = Floats(pixels.aperture);
+    // Read, but used by aperture=two and aperture=blocked alone.
+    for (const char* name : {"gbuffer_first_region", "gbuffer_second_region", "gbuffer_blocked"}) {
+      drawn.input.gbuffer[name].assign(4 * pixels.size(), 0.0f);
+    }
+  }
+  const glm::vec3 sky(scene.sky.value_or(glm::dvec3(0.0)));
+  drawn.input.sky = {sky.x, sky.y, sky.z};
   drawn.image = renderer.Shade(variant);
   return drawn;
 }
@@ -71,6 +81,25 @@ TEST(Export, AStrangerDrawsTheSamePicture) {
     ExportTo(folder.path(), "gloss", name);
     const Variant variant = ParseVariant(techniques, name);
     const Drawn drawn = DrawOneLight(context->gl(), library, variant, LoadScene(FindScene("gloss")));
+    const stranger::Output theirs = stranger::Draw(context->gl(), folder.path().string(), variant.technique->name, drawn.input);
+    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
+    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;
+  }
+}
+
+// Apertures and the sky are inputs like any other, for techniques that know of them and for those that do not.
+TEST(Export, AStrangerDrawsAperturesAndSky) {
+  const auto context = CreateContext(ContextKind::kOsmesa);
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  Scene scene = LoadScene(FindScene("hovering"));
+  scene.aperture->rays = 64;
+  BakeApertures(scene);
+  for (const std::string name : {"ltc", "oat", "oat@published"}) {
+    const TemporaryFolder folder;
+    ExportTo(folder.path(), "hovering", name);
+    const Variant variant = ParseVariant(techniques, name);
+    const Drawn drawn = DrawOneLight(context->gl(), library, variant, scene);
     const stranger::Output theirs = stranger::Draw(context->gl(), folder.path().string(), variant.technique->name, drawn.input);
     EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
     EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;

@@ -22,6 +22,7 @@ struct Input {
   std::map<std::string, std::vector<float>> gbuffer;  // RGBA by sampler
   std::array<float, 3> view_position{};
   std::vector<float> light_rows;  // of one light: 4 floats a row
+  std::array<float, 3> sky{};
 };
 
 struct Output {
@@ -111,6 +112,7 @@ inline Output Draw(const GladGLContext& gl, const std::string& folder, const std
   }
   gl.Uniform3f(gl.GetUniformLocation(program, "view_position"), input.view_position[0], input.view_position[1], input.view_position[2]);
   gl.Uniform1i(gl.GetUniformLocation(program, "light_count"), 1);
+  gl.Uniform3f(gl.GetUniformLocation(program, "sky_radiance"), input.sky[0], input.sky[1], input.sky[2]);
   GLuint block = 0;
   gl.GenBuffers(1, &block);
   gl.BindBuffer(GL_UNIFORM_BUFFER, block);

@@ -143,6 +143,16 @@ TEST(Effects, WhatIsTurnedAwayCallsForNothing) {
   EXPECT_TRUE(SceneEffect(scene, "turned_away").on);
 }
 
+TEST(Effects, FollowTheSky) {
+  Scene scene = MatteWall();
+  EXPECT_EQ(SceneEffect(scene, "sky").reason, "the scene has no sky");
+  scene.sky = glm::dvec3(0.5);
+  EXPECT_THAT(On(scene), ElementsAre("rectangle", "diffuse", "sky"));
+  scene.sky = glm::dvec3(0.4, 0.5, 0.6);
+  EXPECT_THAT(On(scene), ElementsAre("rectangle", "diffuse", "light_color", "sky"));
+  EXPECT_EQ(SceneEffect(scene, "light_color").reason, "the sky is coloured");
+}
+
 TEST(Effects, AnUnknownNameListsWhatThereIs) {
   try {
     SceneEffect(MatteWall(), "horizom");

@@ -19,7 +19,7 @@ Scene SceneOf(std::vector<Mesh> meshes, int rays) {
 }
 
 // The aperture at the vertex of mesh 0 that is nearest to a place.
-glm::vec4 ApertureAt(const Scene& scene, const glm::vec3& place) {
+Aperture ApertureAt(const Scene& scene, const glm::vec3& place) {
   const Mesh& mesh = scene.meshes[0];
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -32,7 +32,7 @@ TEST(Bake, AnOpenPlaneSeesAllOfItsHemisphere) {
   Scene scene = SceneOf({MakePlane({4.0, 4.0}, {}, 0.5)}, 64);
   BakeApertures(scene);
   ASSERT_EQ(scene.meshes[0].apertures.size(), 81u);
-  for (const glm::vec4& aperture : scene.meshes[0].apertures) EXPECT_EQ(aperture, glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
+  for (const Aperture& aperture : scene.meshes[0].apertures) EXPECT_EQ(aperture.open, glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
 }
 
 // At the foot of a wall without end half of the hemisphere is left: versine 1/2, and ∫ ω dω over it is (π/2)(x + z).
@@ -41,7 +41,7 @@ TEST(Bake, TheFootOfAWallSeesAQuarterSphere) {
   wall.rotation = RotationFromDegrees({0.0, 90.0, 0.0});
   Scene scene = SceneOf({MakePlane({2.0, 2.0}, {{1.0, 0.0, 0.0}, glm::dmat3(1.0)}, 1.0), MakePlane({2e4, 2e4}, wall)}, 4096);
   BakeApertures(scene);
-  const glm::vec4 aperture = ApertureAt(scene, {0.0f, 0.0f, 0.0f});
+  const glm::vec4 aperture = ApertureAt(scene, {0.0f, 0.0f, 0.0f}).open;
   EXPECT_NEAR(aperture.w, 0.5, 0.01);
   EXPECT_NEAR(aperture.x, std::sqrt(0.5), 0.01);
   EXPECT_NEAR(aperture.y, 0.0, 0.01);
@@ -55,15 +55,52 @@ TEST(Bake, ABallOverAPlaneLeavesARingThatACapCannotHold) {
   ball.position = {0.0, 0.0, 2.0};
   Scene scene = SceneOf({MakePlane({2.0, 2.0}, {}, 1.0), MakeSphere(1.0, ball)}, 512);
   BakeApertures(scene);
-  const glm::vec4 aperture = ApertureAt(scene, {0.0f, 0.0f, 0.0f});
+  const glm::vec4 aperture = ApertureAt(scene, {0.0f, 0.0f, 0.0f}).open;
   EXPECT_NEAR(aperture.w, std::sqrt(0.75), 5e-3);
   EXPECT_NEAR(aperture.z, 1.0, 2e-3);
+}
+
+// The same ball as an anti-aperture is the cap that it hides, and beside it what is open is one region.
+TEST(Bake, ABallOverAPlaneIsWhatABlockedCapHolds) {
+  Placement ball;
+  ball.position = {0.0, 0.0, 2.0};
+  Scene scene = SceneOf({MakePlane({2.0, 2.0}, {}, 1.0), MakeSphere(1.0, ball)}, 512);
+  BakeApertures(scene);
+  const Aperture aperture = ApertureAt(scene, {0.0f, 0.0f, 0.0f});
+  EXPECT_NEAR(aperture.blocked.w, 1.0 - std::sqrt(0.75), 5e-3);
+  EXPECT_NEAR(aperture.blocked.z, 1.0, 1e-2);
+  EXPECT_EQ(aperture.region[0], aperture.open);
+  EXPECT_EQ(aperture.region[1].w, 0.0f);
+}
+
+// Under a roof between two walls there is an opening on either side. His one cap looks up, at the roof; the two regions look out, mirror
+// images in the middle, and their order is the same all along the floor.
+TEST(Bake, TwoOpeningsAreTwoRegions) {
+  Placement roof, end, other_end;
+  roof.position = {0.0, 0.0, 1.0};
+  end.position = {0.0, 0.9, 0.0};
+  other_end.position = {0.0, -0.9, 0.0};
+  end.rotation = other_end.rotation = RotationFromDegrees({90.0, 0.0, 0.0});
+  Scene scene = SceneOf({MakePlane({0.4, 1.6}, {}, 0.2), MakePlane({2.0, 4.0}, roof), MakePlane({2.0, 4.0}, end), MakePlane({2.0, 4.0}, other_end)}, 2048);
+  BakeApertures(scene);
+  const Aperture middle = ApertureAt(scene, {0.0f, 0.0f, 0.0f});
+  EXPECT_NEAR(middle.open.z, 1.0, 0.02);
+  EXPECT_NEAR(middle.region[0].w, middle.region[1].w, 0.01);
+  EXPECT_NEAR(middle.region[0].x, -middle.region[1].x, 0.01);
+  EXPECT_NEAR(middle.region[0].z, middle.region[1].z, 0.01);
+  const float side = middle.region[0].x > 0.0f ? 1.0f : -1.0f;
+  for (const Aperture& aperture : scene.meshes[0].apertures) {
+    EXPECT_GT(side * aperture.region[0].x, 0.7f);
+    EXPECT_LT(side * aperture.region[1].x, -0.7f);
+    EXPECT_NEAR(aperture.region[0].w + aperture.region[1].w, aperture.open.w, 1e-6);
+    EXPECT_NEAR(aperture.open.w + aperture.blocked.w, 1.0, 1e-6);
+  }
 }
 
 TEST(Bake, WhatIsShutInSeesNothing) {
   Scene scene = SceneOf({MakePlane({0.5, 0.5}, {}), MakeBox({2.0, 2.0, 2.0}, {})}, 64);
   BakeApertures(scene);
-  EXPECT_EQ(ApertureAt(scene, {0.25f, 0.25f, 0.0f}), glm::vec4(0.0f, 0.0f, 1.0f, 0.0f));
+  EXPECT_EQ(ApertureAt(scene, {0.25f, 0.25f, 0.0f}).open, glm::vec4(0.0f, 0.0f, 1.0f, 0.0f));
 }
 
 TEST(Bake, SameBitsOnAnyNumberOfThreads) {

@@ -76,6 +76,17 @@ TEST(SceneWriter, NothingEditedNothingWritten) {
   EXPECT_EQ(EditedText(kText, scene, scene), kText);
 }
 
+TEST(SceneWriter, TheSkyStays) {
+  std::string text = kText;
+  text.insert(text.find("[camera]"), "[sky]\nradiance = 0.25   # dusk\ncolor = [0.5, 0.7, 1.0]\n\n");
+  const Scene before = Read(text);
+  Scene after = before;
+  after.lights[1].radiance *= 2.0;
+  const std::string edited = Edited(before, after, text);
+  EXPECT_THAT(edited, HasSubstr("[sky]\nradiance = 0.25   # dusk\ncolor = [0.5, 0.7, 1.0]\n"));
+  EXPECT_EQ(Read(edited).sky, before.sky);
+}
+
 TEST(SceneWriter, OneNumberChangesOneLine) {
   const Scene before = Read(kText);
   Scene after = before;
