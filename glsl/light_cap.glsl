@@ -41,6 +41,7 @@ float PolygonSolidAngle(Light light, vec3 point) {
 // Of a disk or an ellipse, sr.
 float RoundSolidAngle(vec3 point, vec2 half_size) {
 #if EFFECT_ELLIPSE
+  if (half_size.x == half_size.y) return DiskSolidAngle(point, half_size.x);  // as where the scene has no ellipse
   // As DiskSolidAngle, from the tangents of the cone.
   vec3 to_center = vec3(-point.x, -point.y, -max(point.z, 1e-6 * (half_size.x + half_size.y)));
   Cone cone = EllipseCone(to_center, vec3(half_size.x, 0.0, 0.0), vec3(0.0, half_size.y, 0.0), vec3(0.0, 0.0, 1.0));

@@ -141,9 +141,9 @@ TEST_F(Stressed, DefaultFormsKeepTheirBounds) {
 // Each where its source says, and the default form beside it. Measured: see below.
 TEST_F(Stressed, BrokenFormsFailWhereTheirSourcesSay) {
   const VariantStress ltc = Run("ltc", LightShape::kRectangle, 3000);
-  // The arc cosine of GPUs rings under a bright light: 1.8 of the value, across a floor; ltc 9e-5.
-  const VariantStress fast = Run("ltc+edge=fast_acos", LightShape::kRectangle, 300);
-  EXPECT_GT(Bend(fast, "floor", "diffuse"), 0.5);
+  // The arc cosine of GPUs rings under a bright light: 2.2e-2 of the value, across a floor; the rational fit 1.6e-4, ltc 9e-5.
+  const VariantStress fast = Run("ltc@published+edge=fast_acos", LightShape::kRectangle, 300);
+  EXPECT_GT(Bend(fast, "floor", "diffuse"), 0.015);
   EXPECT_LT(Bend(ltc, "floor", "diffuse"), kMostBend);
   // The matrix over its last element bands at grazing angles: 0.045; undivided 0.011, ltc 4e-5.
   const VariantStress last = Run("ltc@published+norm=last", LightShape::kRectangle, 300);
