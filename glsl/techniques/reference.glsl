@@ -306,12 +306,13 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     vec3 normal = vec3(dot(x_axis, light.normal), dot(y_axis, light.normal), dot(surface.normal, light.normal));
     if (dot(normal, center) < 0.0) {
 #if EFFECT_ELLIPSE
-      vec3 half_a = vec3(dot(x_axis, light.half_axis_x), dot(y_axis, light.half_axis_x), dot(surface.normal, light.half_axis_x));
-      vec3 half_b = vec3(dot(x_axis, light.half_axis_y), dot(y_axis, light.half_axis_y), dot(surface.normal, light.half_axis_y));
-      ConeOutline(EllipseCone(center, half_a, half_b, normal), mirror, outline);
-#else
-      ConeOutline(DiskCone(center, normal, light.half_size.x), mirror, outline);
+      if (light.half_size.x != light.half_size.y) {
+        vec3 half_a = vec3(dot(x_axis, light.half_axis_x), dot(y_axis, light.half_axis_x), dot(surface.normal, light.half_axis_x));
+        vec3 half_b = vec3(dot(x_axis, light.half_axis_y), dot(y_axis, light.half_axis_y), dot(surface.normal, light.half_axis_y));
+        ConeOutline(EllipseCone(center, half_a, half_b, normal), mirror, outline);
+      } else
 #endif
+      ConeOutline(DiskCone(center, normal, light.half_size.x), mirror, outline);
     }
 #endif
   } else {

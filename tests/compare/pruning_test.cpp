@@ -79,8 +79,7 @@ TEST_F(Pruning, KeepsTheBuiltInScenes) {
       const Variant variant = DefaultVariant(technique);
       if (technique.yardstick || WhyUnsupported(variant, scene)) continue;
       const Difference difference = Pruned(renderer, scene, variant);
-      // With every effect on, reference takes a disk for an ellipse, whose rounding is another: 1.2e-6 on `shapes`.
-      EXPECT_LE(difference.largest, difference.where.starts_with("reference in shapes") ? 1.5e-6f : kTolerance) << difference.where;
+      EXPECT_LE(difference.largest, kTolerance) << difference.where;
       worst.Add(difference);
     }
   }
