@@ -8,7 +8,7 @@ packages="g++ cmake ninja-build pkg-config python3-glad libglm-dev libopenimagei
   libtomlplusplus-dev libtbb-dev libcli11-dev libfmt-dev libeigen3-dev nlohmann-json3-dev
   libembree-dev libdeflate-dev zlib1g-dev libegl-dev libosmesa6-dev libosmesa6 libegl1 libegl-mesa0 libgl1-mesa-dri libgtest-dev libgmock-dev
   libglfw3-dev libimgui-dev libstb-dev libgl1 libglx-mesa0 fonts-dejavu-core
-  glmark2-data ca-certificates libvulkan-dev mesa-vulkan-drivers glslang-tools spirv-cross node-d3"
+  glmark2-data ca-certificates libvulkan-dev mesa-vulkan-drivers glslang-dev glslang-tools spirv-cross node-d3"
 if [ "${1:-}" = test ]; then
   packages="$packages git chromium chromium-driver python3-selenium xvfb xdotool"
 fi

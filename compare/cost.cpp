@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "compare/content_hash.h"
+#include "compare/spirv.h"
 #include "compare/subprocess.h"
 #include "glsl/effects.h"
 #include "glsl/expand.h"
@@ -75,13 +76,14 @@ std::string FindDriver() {
   return "";
 }
 
-void Append(std::vector<char>& bytes, std::span<const char> more) {
-  bytes.insert(bytes.end(), more.begin(), more.end());
+void Append(std::vector<char>& bytes, std::span<const std::uint32_t> words) {
+  const auto* begin = reinterpret_cast<const char*>(words.data());
+  bytes.insert(bytes.end(), begin, begin + words.size_bytes());
 }
 
 void Append(std::vector<char>& bytes, std::size_t count) {
   const auto word = static_cast<std::uint32_t>(count);
-  Append(bytes, std::span(reinterpret_cast<const char*>(&word), sizeof word));
+  Append(bytes, std::span(&word, 1));
 }
 
 // A line of the worker's.
@@ -110,8 +112,8 @@ struct CostMeter::Text {
 
 struct CostMeter::Job {
   const Text* text;
-  const std::vector<char>* words;  // SPIR-V
-  const std::vector<char>* vertex;
+  const std::vector<std::uint32_t>* words;  // SPIR-V
+  const std::vector<std::uint32_t>* vertex;
   ShaderCost* cost;
 };
 
@@ -135,16 +137,12 @@ double MillisecondsAt1080p(const std::string& gpu, double cycles) {
 
 CostTools CostTools::FromEnvironment() {
   const CostTools usual;
-  return {Or("AREALAB_GLSLANG", usual.glslang), Or("AREALAB_VULKAN", usual.vulkan), Or("AREALAB_RADV", FindDriver())};
+  return {Or("AREALAB_VULKAN", usual.vulkan), Or("AREALAB_RADV", FindDriver())};
 }
 
 CostMeter::CostMeter(std::vector<std::string> gpus, fs::path cache, CostTools tools)
     : gpus_(std::move(gpus)), cache_(std::move(cache)), tools_(std::move(tools)) {
   CheckGpuNames(gpus_);
-  const ProcessResult glslang = RunProcess({tools_.glslang, "--version"}, {}, {});
-  if (!glslang.started || glslang.status != 0) {
-    throw InputError(fmt::format("{} does not run; expected Debian's package glslang-tools", tools_.glslang));
-  }
   std::error_code none;
   if (tools_.driver.empty() || !fs::exists(tools_.driver, none)) {
     throw InputError(fmt::format("no AMD Vulkan driver ({}); expected Debian's package mesa-vulkan-drivers",
@@ -158,8 +156,7 @@ CostMeter::CostMeter(std::vector<std::string> gpus, fs::path cache, CostTools to
                                  driver.signal != 0 ? fmt::format("the Vulkan driver ends with signal {}", driver.signal)
                                                     : FirstLine(driver.messages)));
   }
-  const std::string version = FirstLine(glslang.messages);  // "Glslang Version: 11:12.0.0"
-  compilers_ = fmt::format("{} by glslang {}", FirstLine(driver.data), version.substr(version.rfind(' ') + 1));
+  compilers_ = fmt::format("{} by glslang {}", FirstLine(driver.data), GlslangVersion());
 }
 
 std::vector<std::pair<std::string, std::string>> CostMeter::WorkerEnvironment(const std::string& gpu) const {
@@ -170,23 +167,14 @@ std::vector<std::pair<std::string, std::string>> CostMeter::WorkerEnvironment(co
           {"ACO_DEBUG", ""},                {"NIR_DEBUG", ""}};
 }
 
-// Loose uniforms are gathered in a block; samplers keep 0 to 15, uniform blocks move to 16 and on: else they collide silently.
-std::vector<char> CostMeter::Translate(const Text& text) const {
-  const ProcessResult result =
-      RunProcess({tools_.glslang, "--stdin", "-S", text.vertex ? "vert" : "frag", "-V", "--target-env", "vulkan1.1", "-R",
-                  "--amb", "--aml", "--sub", "16", "--sbb", "32", "--sib", "48", "-o", "/proc/self/fd/3"},
-                 {}, text.source.text);
-  if (result.status == 0 && !result.data.empty()) return {result.data.begin(), result.data.end()};
-  std::string messages;
-  const std::string mark = "ERROR: stdin:";  // as drivers write it: "ERROR: 0:"
-  for (const std::string& line : Lines(result.messages)) {
-    messages += line.starts_with(mark) ? fmt::format("ERROR: 0:{}\n", line.substr(mark.size())) : line + "\n";
-  }
-  for (const std::string& line : Lines(text.source.RewriteLog(messages))) {
+std::vector<std::uint32_t> CostMeter::Translate(const Text& text) {
+  SpirvResult result = TranslateToSpirv(text.source.text, text.vertex ? SpirvStage::kVertex : SpirvStage::kFragment);
+  if (!result.words.empty()) return std::move(result.words);
+  for (const std::string& line : Lines(text.source.RewriteLog(result.log))) {
     if (line.find(": error: ") == std::string::npos) continue;
     throw InputError(fmt::format("{} ({}, as SPIR-V); expected text that glslang compiles", line, text.who));
   }
-  throw InputError(fmt::format("{}: glslang ends with status {}; expected SPIR-V", text.who, result.status));
+  throw InputError(fmt::format("{}: glslang says \"{}\"; expected SPIR-V", text.who, FirstLine(result.log)));
 }
 
 fs::path CostMeter::CacheFile(const Text& text, const Text& vertex, const std::string& gpu) const {
@@ -205,8 +193,8 @@ void CostMeter::Compile(std::span<const Job> jobs, const std::string& gpu) const
   std::vector<char> input;
   for (const Job& job : jobs) {
     Append(input, static_cast<std::size_t>(job.text->targets));
-    Append(input, job.vertex->size() / sizeof(std::uint32_t));
-    Append(input, job.words->size() / sizeof(std::uint32_t));
+    Append(input, job.vertex->size());
+    Append(input, job.words->size());
     Append(input, *job.vertex);
     Append(input, *job.words);
   }
@@ -227,7 +215,7 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
   // Every text once, with the places that its figures go to.
   struct Entry {
     Text text;
-    std::vector<char> words;
+    std::vector<std::uint32_t> words;
     std::vector<ShaderCost> costs;  // by GPU
     std::vector<fs::path> files;
     bool known = true;
@@ -281,16 +269,18 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
       done += count;
       if (progress) progress(static_cast<double>(done) / static_cast<double>(all));
     };
-    const std::vector<char> vertex_words = Translate(vertex);
+    const std::vector<std::uint32_t> vertex_words = Translate(vertex);
     tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
       missing[i]->words = Translate(missing[i]->text);
       report(1);
     });
-    // A batch is a process, which costs a fifth of a second to start.
-    constexpr std::size_t kBatch = 12;
-    const std::size_t batches = (missing.size() + kBatch - 1) / kBatch;
+    // A batch is a process, which costs a fifth of a second to start: as few as keep all cores busy.
+    constexpr std::size_t kLeast = 12;
+    const std::size_t cores = std::max(std::thread::hardware_concurrency(), 1u);
+    const std::size_t batches = std::clamp((cores + gpus_.size() - 1) / gpus_.size(), std::size_t{1}, missing.size() / kLeast + 1);
     tbb::parallel_for(std::size_t{0}, batches * gpus_.size(), [&](std::size_t i) {
-      const std::size_t g = i / batches, first = i % batches * kBatch, last = std::min(first + kBatch, missing.size());
+      const std::size_t g = i / batches, first = i % batches * missing.size() / batches,
+                        last = (i % batches + 1) * missing.size() / batches;
       std::vector<Job> jobs;
       for (std::size_t m = first; m < last; ++m) {
         jobs.push_back({&missing[m]->text, &missing[m]->words, &vertex_words, &missing[m]->costs[g]});

@@ -2,6 +2,7 @@
 // its null device, and what that compiler says of the code. Nothing is run: these are estimates, never measurements.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -25,13 +26,12 @@ void CheckGpuNames(const std::vector<std::string>& gpus);
 // PlayStation 4's 18 compute units of 4 SIMDs at 0.8 GHz [Drobot 2014 and Hill 2016 measured on one].
 double MillisecondsAt1080p(const std::string& gpu, double cycles);
 
-// The programs and libraries that compile (Debian: glslang-tools, mesa-vulkan-drivers).
+// The libraries that compile for a GPU (Debian: libvulkan1, mesa-vulkan-drivers).
 struct CostTools {
-  std::string glslang = "glslangValidator";  // a program in PATH or a path
-  std::string vulkan = "libvulkan.so.1";     // as dlopen takes it
-  std::string driver;                        // RADV's manifest, radeon_icd.*.json; empty: where Debian installs it
+  std::string vulkan = "libvulkan.so.1";  // as dlopen takes it
+  std::string driver;                     // RADV's manifest, radeon_icd.*.json; empty: where Debian installs it
 
-  // The above, or what AREALAB_GLSLANG, AREALAB_VULKAN and AREALAB_RADV say instead.
+  // The above, or what AREALAB_VULKAN and AREALAB_RADV say instead.
   static CostTools FromEnvironment();
 };
 
@@ -55,7 +55,7 @@ class CostMeter {
  private:
   struct Text;
   struct Job;
-  std::vector<char> Translate(const Text& text) const;
+  static std::vector<std::uint32_t> Translate(const Text& text);
   std::filesystem::path CacheFile(const Text& text, const Text& vertex, const std::string& gpu) const;
   std::vector<std::pair<std::string, std::string>> WorkerEnvironment(const std::string& gpu) const;
   void Compile(std::span<const Job> jobs, const std::string& gpu) const;

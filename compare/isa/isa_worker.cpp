@@ -1,5 +1,5 @@
 // Compiles shaders for one GPU that is not there and prints what the compiler says of them: a process of its own, since
-// RADV reads the GPU's family once (RADV_FORCE_FAMILY) and some families end the process. Run by compare/cost_gpu.cpp.
+// RADV reads the GPU's family once (RADV_FORCE_FAMILY) and some families end the process. Run by compare/cost.cpp.
 //
 // Descriptor 0: per shader three counts of 32 bits (colour targets, words of the vertex and of the fragment shader), then
 // the SPIR-V words of both. Descriptor 3: the driver in one line, then a line per shader: "instructions cycles vgprs sgprs
@@ -128,7 +128,7 @@ class NullDevice {
     return reinterpret_cast<Function>(get_(instance_, name));
   }
 
-  // Where `glslangValidator` of compare/cost.cpp puts things: samplers from 0, uniform blocks from 16, others after them.
+  // Where compare/spirv.cpp puts things: samplers from 0, uniform blocks from 16, others after them.
   void MakeLayout() {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (std::uint32_t i = 0; i < 32; ++i) {
