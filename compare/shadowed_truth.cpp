@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "compare/light_sampling.h"
+#include "compare/sky_integrals.h"
 #include "compare/textured_truth.h"
 #include "compare/truth_bands.h"
 #include "compare/truth_cache.h"
@@ -220,6 +221,7 @@ double Sum(const glm::dvec3& v) {
 struct ShadowBands {
   const Scene& scene;
   SceneLights integrator;
+  SkyIntegrals sky_integrals;
   const SurfacePixels& pixels;
   const RadianceImage& unshadowed;
   double light_tolerance, tolerance;
@@ -281,7 +283,7 @@ struct ShadowBands {
       above.apex = pixel->point.position;
       above.Add(pixel->point.normal, 0.0);
       if (rays->MayBlock(above)) {
-        lights.emplace_back(*pixel, sky, nullptr, ColorIntegrals(IntegrateSky(pixel->point)), LightDirections::Sky(pixel->point.normal),
+        lights.emplace_back(*pixel, sky, nullptr, ColorIntegrals(sky_integrals.At(pixel->point)), LightDirections::Sky(pixel->point.normal),
                             Mix(Mix(kSeed, i), scene.lights.size()));
         sky_last = true;
       } else {
@@ -349,6 +351,7 @@ BandShader MakeShader(const Scene& scene, const SurfacePixels& pixels, const Rad
                       const TruthOptions& truth_options, const ShadowOptions& options) {
   return ShadowBands{scene,
                      SceneLights(scene),
+                     SkyIntegrals(scene, pixels),
                      pixels,
                      unshadowed,
                      std::max(truth_options.tolerance, kLightShare * options.tolerance),

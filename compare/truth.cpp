@@ -7,46 +7,20 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <thread>
 #include <utility>
 
+#include "compare/sky_integrals.h"
 #include "compare/textured_truth.h"
 #include "compare/truth_bands.h"
-#include "glsl/fit_lobe.h"
 
 namespace arealab {
 namespace {
 
 constexpr double kMinAlpha = 1e-4;  // as in glsl/surface.glsl
 
-// Points across and around the half-vector domain: against 96 of each relative errors are measured in tests/compare/sky_test.cpp.
-constexpr int kSkyNodes = 32;
-// Where both rules are this good, their difference is chance.
-constexpr double kSkyRounding = 2e-8;
-
 }  // namespace
-
-LightIntegrals IntegrateSky(const ShadingPoint& point) {
-  const double cosine = glm::dot(point.normal, point.to_view);
-  LightIntegrals sky;
-  if (!(cosine > 0.0)) return sky;
-  fit::View view;
-  view.brdf = point.brdf;
-  view.alpha = point.alpha;
-  view.cosine = std::min(cosine, 1.0);
-  view.sine = std::sqrt(std::max(0.0, (1.0 - view.cosine) * (1.0 + view.cosine)));
-  const fit::LobeMoments fine = fit::Moments(fit::UpperNodes(view, kSkyNodes, kSkyNodes));
-  const fit::LobeMoments coarse = fit::Moments(fit::UpperNodes(view, kSkyNodes / 2, kSkyNodes / 2));
-  sky.form_factor = 1.0;
-  sky.specular = fine.albedo;
-  sky.specular_grazing = fine.schlick;
-  sky.form_factor_error = std::numeric_limits<double>::epsilon();
-  sky.specular_error = std::abs(fine.albedo - coarse.albedo) + kSkyRounding;
-  sky.specular_grazing_error = std::abs(fine.schlick - coarse.schlick) + kSkyRounding;
-  return sky;
-}
 
 std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels& pixels, std::size_t i) {
   if (!pixels.IsSurface(i)) return std::nullopt;
@@ -68,8 +42,8 @@ std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels
 
 namespace {
 
-TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SurfacePixels& pixels, int row_begin, int row_end,
-                    double tolerance) {
+TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SkyIntegrals& sky_integrals, const SurfacePixels& pixels,
+                    int row_begin, int row_end, double tolerance) {
   TruthBand band;
   auto width = static_cast<std::size_t>(pixels.width);
   std::size_t begin = static_cast<std::size_t>(row_begin) * width,
@@ -99,7 +73,7 @@ TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const Surface
       add(light.radiance, integrals);
       if (scene.sky) add(-sky, ColorIntegrals(IntegrateLight(pixel->point, light, tolerance)));
     }
-    if (scene.sky) add(sky, ColorIntegrals(IntegrateSky(pixel->point)));
+    if (scene.sky) add(sky, ColorIntegrals(sky_integrals.At(pixel->point)));
     band.diffuse[i - begin] = glm::vec3(diffuse);
     band.specular[i - begin] = glm::vec3(specular);
     double total = diffuse.x + diffuse.y + diffuse.z + specular.x + specular.y + specular.z;
@@ -113,8 +87,8 @@ TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const Surface
 }  // namespace
 
 BandShader UnshadowedBands(const Scene& scene, const SurfacePixels& pixels, double tolerance) {
-  return [&scene, lights = SceneLights(scene), &pixels, tolerance](int row_begin, int row_end) {
-    return ShadeBand(scene, lights, pixels, row_begin, row_end, tolerance);
+  return [&scene, lights = SceneLights(scene), sky = SkyIntegrals(scene, pixels), &pixels, tolerance](int row_begin, int row_end) {
+    return ShadeBand(scene, lights, sky, pixels, row_begin, row_end, tolerance);
   };
 }
 

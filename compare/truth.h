@@ -33,10 +33,6 @@ struct ShadingPoint {
 // gives zeros.
 LightIntegrals IntegrateLight(const ShadingPoint& point, const Light& light, double tolerance);
 
-// What the whole sky of unit radiance does to it: form factor 1, the lobe's energy by the quadrature that the tables are fitted
-// with; errors are what half as fine a rule differs by.
-LightIntegrals IntegrateSky(const ShadingPoint& point);
-
 struct Truth {
   RadianceImage radiance;
   std::vector<float> relative_error;  // per pixel, of the total; 0 where nothing is lit

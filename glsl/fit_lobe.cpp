@@ -98,6 +98,8 @@ Nodes UpperNodes(const View& view, int radial, int azimuthal) {
   const auto& around = GaussRule(azimuthal / 2);
   const double c = view.cosine, s = view.sine, alpha = view.alpha;
   Nodes nodes;
+  const auto count = 2 * around.size() * across.size();
+  for (std::vector<double>* values : {&nodes.x, &nodes.y, &nodes.z, &nodes.weight, &nodes.density, &nodes.schlick}) values->reserve(count);
   for (int side = 0; side < 2; ++side) {
     for (const auto& [phi_position, phi_weight] : around) {
       const double phi = glm::half_pi<double>() * (side + phi_position);
