@@ -150,7 +150,6 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   options.size = arguments.common.Size();
   options.truth.tolerance = arguments.tolerance;
   options.cache = arguments.common.CacheFolder();
-  CheckReportDirectory(arguments.out);
   options.split = arguments.split;
   if (arguments.timing) options.timed_against = ParseVariant(techniques, "point");
   const std::string no_isa = PrepareCost(arguments, options);
@@ -160,9 +159,11 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   Results results;
   {
     Progress progress;
-    constexpr double kReportShare = 0.1;  // of the whole time, with the truth cached
-    options.progress = [&](const std::string& what, double fraction) {
-      progress.Show(what, fraction * (1.0 - kReportShare));
+    options.progress = [&](const std::string& what, double fraction) { progress.Show(what, fraction); };
+    ReportWriter report(arguments.out, options.scenes.size());
+    options.done = [&](SceneResult& scene) {
+      report.Add(scene);
+      scene.ReleaseImages();
     };
     const std::unique_ptr<Context> context = arguments.common.MakeContext();
     results = Compare(*context, library, options);
@@ -171,9 +172,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
     results.version = AREALAB_VERSION;
     results.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
                                fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-    WriteReport(results, arguments.out, [&](double fraction) {
-      progress.Show("report", 1.0 - kReportShare * (1.0 - fraction));
-    });
+    report.Finish(results);
   }
   for (const SceneResult& scene : results.scenes) fmt::print("{}\n", SummaryTable(scene));
   if (arguments.timing && results.software) fmt::print("× point, net: a CPU rasteriser's times, not a GPU's\n");

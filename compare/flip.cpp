@@ -57,7 +57,7 @@ struct Planar {
   std::array<std::vector<float>, 3> channel;
 };
 
-using Planes7 = std::array<std::vector<float>, 7>;
+using Planes7 = std::array<std::vector<float>, 7>;  // kPad rows more above and below
 
 namespace baseline {
 #include "compare/flip_kernels.inc"
@@ -207,7 +207,7 @@ float LargestColorDistance() {
 // Columns that are filtered at a time, so that what twenty rows of seven planes hold there stays in the first cache.
 constexpr int kBlock = 64;
 
-// In floats: whole vectors, and an odd number of cache lines, since rows a power of two apart would share a few sets of
+// In floats: whole pairs of vectors, and an odd number of cache lines, since rows a power of two apart would share a few sets of
 // the cache, and the filters down the columns read twenty rows at once.
 std::size_t Stride(int width) {
   constexpr int kLine = 16;  // floats in 64 bytes
@@ -245,7 +245,8 @@ void Resize(FlipReference::Percept& percept, std::size_t size) {
 }
 
 void FilterRows(const Planar& image, float exposure, Planes7& planes) {
-  for (auto& plane : planes) plane.resize(image.stride * static_cast<std::size_t>(image.height));
+  const auto stride = static_cast<std::ptrdiff_t>(image.stride);
+  for (auto& plane : planes) plane.resize(image.stride * static_cast<std::size_t>(image.height + 2 * kPad));
   static const Kernels kernels = ChooseKernels();
   tbb::parallel_for(tbb::blocked_range<int>(0, image.height, 16), [&](const tbb::blocked_range<int>& rows) {
     std::vector<float> scratch(3 * (image.stride + 2 * kPad));
@@ -253,6 +254,13 @@ void FilterRows(const Planar& image, float exposure, Planes7& planes) {
       kernels.filter_row(image, y, std::exp2(exposure), TheFilters(), scratch.data(), planes);
     }
   });
+  for (auto& plane : planes) {  // the border repeats
+    const auto first = plane.begin() + kPad * stride, end = plane.end() - kPad * stride, last = end - stride;
+    for (std::ptrdiff_t k = 1; k <= kPad; ++k) {
+      std::copy(first, first + stride, first - k * stride);
+      std::copy(last, end, last + k * stride);
+    }
+  }
 }
 
 // The luminance that the tone mapper shows as kToneTarget: the positive root of its quadratic.
@@ -310,11 +318,11 @@ FlipReference::FlipReference(std::span<const glm::vec3> reference, int width) : 
   for (float exposure : exposures_) {
     FilterRows(image, exposure, planes);
     Percept percept;
-    Resize(percept, planes[0].size());
+    Resize(percept, image.stride * static_cast<std::size_t>(height_));
     tbb::parallel_for(tbb::blocked_range<int>(0, height_, 16), [&](const tbb::blocked_range<int>& rows) {
       for (int begin = 0; begin < width_; begin += kBlock) {
         for (int y = rows.begin(); y < rows.end(); ++y) {
-          kernels.perceive_row(planes, begin, std::min(begin + kBlock, width_), image.stride, height_, y, TheFilters(),
+          kernels.perceive_row(planes, begin, std::min(begin + kBlock, width_), image.stride, y, TheFilters(),
                                percept,
                                static_cast<std::size_t>(y) * image.stride + static_cast<std::size_t>(begin));
         }
@@ -344,7 +352,7 @@ std::vector<float> FlipReference::MapOf(std::span<const glm::vec3> test) const {
         const int end = std::min(begin + kBlock, width_);
         for (int y = rows.begin(); y < rows.end(); ++y) {
           const std::size_t at = static_cast<std::size_t>(y) * image.stride + static_cast<std::size_t>(begin);
-          kernels.perceive_row(planes, begin, end, image.stride, height_, y, TheFilters(), percept, 0);
+          kernels.perceive_row(planes, begin, end, image.stride, y, TheFilters(), percept, 0);
           kernels.compare_row(percepts_[e], at, percept, 0, end - begin, largest_color, padded.data() + at);
         }
       }

@@ -101,18 +101,21 @@ std::vector<PairResult> MeasurePairs(const std::vector<VariantResult>& variants)
     shown.push_back(&variant);
     totals.push_back(TotalRadiance(*variant.image));
   }
+  const std::size_t count = shown.size();
+  std::vector<double> differences(count * count, 0.0);  // of a and b, Σ(a−b)²; on the diagonal Σa²
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t a) {
+    differences[a * count + a] = SquaredNorm(totals[a]);
+    for (std::size_t b = 0; b < a; ++b) {
+      differences[a * count + b] = differences[b * count + a] = SquaredDifference(totals[a], totals[b]);
+    }
+  });
   std::vector<PairResult> pairs;
-  for (const VariantResult* a : shown) {
-    for (const VariantResult* b : shown) {
-      if (a != b) pairs.push_back({a->name, b->name, kNotMeasured});
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = 0; b < count; ++b) {
+      if (a == b) continue;
+      pairs.push_back({shown[a]->name, shown[b]->name, RelativeRmse(differences[a * count + b], differences[b * count + b])});
     }
   }
-  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
-    const std::size_t others = shown.size() - 1;
-    const std::size_t a = i / others;
-    const std::size_t b = i % others + (i % others >= a ? 1 : 0);
-    pairs[i].rel_rmse = RelativeRmse(totals[a], totals[b]);
-  });
   return pairs;
 }
 
@@ -144,8 +147,7 @@ ShadowResult Describe(const ShadowedTruth& shadowed, const RadianceImage& unshad
   result.p99_error = shadowed.p99_error;
   result.seconds = shadowed.seconds;
   result.cached = shadowed.cached;
-  // Not measured: where all light is lost.
-  if (!(missing.rel_rmse < kLeastShadow)) result.image = std::make_shared<const RadianceImage>(shadowed.radiance);
+  if (result.Matters()) result.image = std::make_shared<const RadianceImage>(shadowed.radiance);
   return result;
 }
 
@@ -191,7 +193,7 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
 
   Renderer renderer(context.gl(), library);
   results.scenes.reserve(options.scenes.size());  // they stay in place while they are measured
-  tbb::task_group measuring;
+  tbb::task_group measuring;  // rethrows what a task threw
   const double scene_share = 1.0 / static_cast<double>(std::max<std::size_t>(options.scenes.size(), 1));
   for (std::size_t s = 0; s < options.scenes.size(); ++s) {
     Scene scene = LoadScene(options.scenes[s]);
@@ -259,8 +261,9 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     report("errors", 0.9);
     measuring.wait();  // the scene before: at most one is measured while another is shaded
     results.scenes.push_back(std::move(result));
-    measuring.run([&scene_result = results.scenes.back(), &variants = options.variants] {
-      MeasureScene(variants, scene_result);
+    measuring.run([&scene_result = results.scenes.back(), &options] {
+      MeasureScene(options.variants, scene_result);
+      if (options.done) options.done(scene_result);
     });
   }
   measuring.wait();

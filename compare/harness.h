@@ -32,6 +32,8 @@ struct CompareOptions {
   TimingOptions timing;
   std::shared_ptr<const CostMeter> cost;                     // what compiles for GPUs that are not here; may be null
   std::function<void(const std::string&, double)> progress;  // what is being done, fraction of the whole
+  // Gets each scene, in their order, once all is known of it, while the next is being shaded; it may take its images away.
+  std::function<void(SceneResult&)> done;
 };
 
 // Renders, integrates and measures. Everything in the result is filled but `command`, `version` and `date`.

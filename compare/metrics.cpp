@@ -93,20 +93,30 @@ ErrorMetrics CompareImages(std::span<const glm::vec3> a, std::span<const glm::ve
   return metrics;
 }
 
-double RelativeRmse(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
+double SquaredDifference(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
   CheckSizes(a.size(), b.size(), 1);
-  double squares = 0.0, reference_squares = 0.0;
+  glm::dvec3 sum(0.0);  // three sums wait for their additions side by side
   for (std::size_t i = 0; i < a.size(); ++i) {
-    for (int channel = 0; channel < 3; ++channel) {
-      const double reference = static_cast<double>(b[i][channel]);
-      const double difference = static_cast<double>(a[i][channel]) - reference;
-      squares += difference * difference;
-      reference_squares += reference * reference;
-    }
+    const glm::dvec3 difference = glm::dvec3(a[i]) - glm::dvec3(b[i]);
+    sum += difference * difference;
   }
-  // A NaN or an infinity of either ends up in a sum.
-  if (!std::isfinite(squares) || !std::isfinite(reference_squares)) return kNotMeasured;
-  return Ratio(std::sqrt(squares), std::sqrt(reference_squares));
+  return sum.x + sum.y + sum.z;
+}
+
+double SquaredNorm(std::span<const glm::vec3> b) {
+  glm::dvec3 sum(0.0);
+  for (const glm::vec3& v : b) sum += glm::dvec3(v) * glm::dvec3(v);
+  return sum.x + sum.y + sum.z;
+}
+
+double RelativeRmse(double squared_difference, double squared_norm) {
+  // A NaN or an infinity of either image ends up in a sum.
+  if (!std::isfinite(squared_difference) || !std::isfinite(squared_norm)) return kNotMeasured;
+  return Ratio(std::sqrt(squared_difference), std::sqrt(squared_norm));
+}
+
+double RelativeRmse(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
+  return RelativeRmse(SquaredDifference(a, b), SquaredNorm(b));
 }
 
 int CountNonfinitePixels(const RadianceImage& image) {

@@ -25,14 +25,16 @@ std::uint16_t Zigzag(std::uint16_t v) {
   return Wrap((v << 1) ^ ((v & 0x8000) != 0 ? 0xFFFF : 0));
 }
 
-// What a smooth image leaves over once each pixel is foretold from three neighbours.
+// What a smooth image leaves over once each pixel is foretold from three neighbours; those outside are 0.
 Plane Residual(const Plane& plane, std::size_t width) {
   Plane residual(plane.size());
-  for (std::size_t i = 0; i < plane.size(); ++i) {
-    const bool first_column = i % width == 0, first_row = i < width;
-    const int left = first_column ? 0 : plane[i - 1], up = first_row ? 0 : plane[i - width];
-    const int corner = first_column || first_row ? 0 : plane[i - width - 1];
-    residual[i] = Zigzag(Wrap(plane[i] - (left + up - corner)));
+  const Plane dark(width, 0);
+  for (std::size_t begin = 0; begin < plane.size(); begin += width) {
+    const std::uint16_t *row = plane.data() + begin, *up = begin == 0 ? dark.data() : row - width;
+    residual[begin] = Zigzag(Wrap(row[0] - up[0]));
+    for (std::size_t x = 1; x < width; ++x) {
+      residual[begin + x] = Zigzag(static_cast<std::uint16_t>(row[x] - row[x - 1] - up[x] + up[x - 1]));
+    }
   }
   return residual;
 }
@@ -46,8 +48,11 @@ std::uint64_t Cost(const Plane& residual) {
 }
 
 void Append(const Plane& residual, std::vector<std::uint8_t>* bytes) {
-  for (std::uint16_t v : residual) bytes->push_back(static_cast<std::uint8_t>(v & 0xFF));
-  for (std::uint16_t v : residual) bytes->push_back(static_cast<std::uint8_t>(v >> 8));
+  const std::size_t begin = bytes->size(), size = residual.size();
+  bytes->resize(begin + 2 * size);
+  std::uint8_t* out = bytes->data() + begin;
+  for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(residual[i] & 0xFF);
+  for (std::size_t i = 0; i < size; ++i) out[size + i] = static_cast<std::uint8_t>(residual[i] >> 8);
 }
 
 // How many of the lowest bits are 0 in every value.
@@ -66,9 +71,9 @@ Plane Shifted(const Plane& plane, int shift) {
 }
 
 std::vector<std::uint8_t> Deflate(const std::vector<std::uint8_t>& bytes) {
-  // Level 7: 13 % smaller than zlib at 4 in 1.6 times its time; 5 is 9 % smaller in the same time.
+  // Measured over a report's files: 7 is 4.6 % smaller in 2.6 times the time, 1 is 6 % larger in 0.7 times it.
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(7), &libdeflate_free_compressor);
+      libdeflate_alloc_compressor(4), &libdeflate_free_compressor);
   if (compressor == nullptr) throw std::bad_alloc();
   std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
   packed.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), packed.data(), packed.size()));

@@ -8,10 +8,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fstream>
-#include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -164,12 +165,13 @@ Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
 
 // One picture's files.
 struct Job {
+  enum class Kind { kTruth, kShadowed, kVariant, kEmission };
   const SceneResult* scene;
   const Rounding* rounding;
   std::shared_ptr<const RadianceImage> image;
   std::string folder, stem;
-  bool emission_only = false, shadowed = false;
-  const VariantResult* variant = nullptr;  // whose picture it is, if any's
+  Kind kind;
+  const VariantResult* variant;  // whose picture it is, if any's
 };
 
 // What is far off needs fewer digits: a variant's values are kept to at most 1/8 of its own relative RMSE,
@@ -185,15 +187,6 @@ int DroppedBits(const VariantResult& variant, int most_bits) {
 // by default, 3 % is seen as bands.
 constexpr double kMostBytes = 56e6;
 constexpr int kFewestBits = 3, kMostBits = 5;
-constexpr std::size_t kSampleStride = 12;
-
-double BytesIn(const fs::path& folder) {
-  double bytes = 0.0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
-  }
-  return bytes;
-}
 
 constexpr int kThumbnailSide = 192;  // pixels at most: what the page gives it
 
@@ -232,34 +225,31 @@ void Coarsen(HalfImage& shadowed, const HalfImage& truth) {
   }
 }
 
-void WriteImages(const Job& job, int most_bits, const fs::path& root) {
+// Returns how many bytes they take, the thumbnail's aside.
+std::size_t WriteImages(const Job& job, int most_bits, const fs::path& root) {
   const SceneResult& scene = *job.scene;
   const Rounding& rounding = *job.rounding;
   const std::string key = job.folder + "/" + job.stem;
-  const fs::path script = root / "data" / job.folder / (job.stem + ".js");
-  if (job.emission_only) {
-    WriteText(script, EncodePageImage(key, ToHalf(*job.image)));
-    return;
-  }
   HalfImage half;
-  if (job.image == scene.truth) {
+  if (job.kind == Job::Kind::kTruth) {
     half = rounding.truth;
-    WriteText(script, EncodePageImage(key, half));
-  } else if (scene.truth) {
+  } else if (scene.truth && job.kind != Job::Kind::kEmission) {
     half = ToHalf(*job.image, rounding.coarse_below, *scene.truth, rounding.truth);
-    if (job.shadowed) Coarsen(half, rounding.truth);
+    if (job.kind == Job::Kind::kShadowed) Coarsen(half, rounding.truth);
     if (job.variant) DropBits(half, DroppedBits(*job.variant, most_bits));
-    WriteText(script, EncodePageImage(key, half, &rounding.truth));
   } else {
     half = ToHalf(*job.image);
-    WriteText(script, EncodePageImage(key, half));
   }
-  const fs::path images = root / "images" / job.folder;
-  WriteExr(images / (job.stem + ".exr"), half, ExrLoss::kForTheEye);
+  const bool beside_truth = job.kind == Job::Kind::kShadowed || job.kind == Job::Kind::kVariant;
+  const std::string script = EncodePageImage(key, half, beside_truth && scene.truth ? &rounding.truth : nullptr);
+  WriteText(root / "data" / job.folder / (job.stem + ".js"), script);
+  if (job.kind == Job::Kind::kEmission) return script.size();
+  const fs::path images = root / "images" / job.folder, exr = images / (job.stem + ".exr");
+  WriteExr(exr, half, ExrLoss::kForTheEye);
   const std::span<const glm::vec3> emission =
       scene.emission ? std::span<const glm::vec3>(*scene.emission) : std::span<const glm::vec3>();
-  WriteThumbnail(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width,
-                 scene.exposure);
+  WriteThumbnail(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width, scene.exposure);
+  return script.size() + fs::file_size(exr);
 }
 
 // The luminance below which a relative difference is taken relative to this instead: 1 % of the truth's mean
@@ -344,103 +334,119 @@ void CheckReportDirectory(const fs::path& directory) {
   }
 }
 
-void WriteReport(const Results& results, const fs::path& directory,
-                 const std::function<void(double)>& progress) {
-  CheckReportDirectory(directory);
-  const fs::path target = Normal(directory);
-  RemoveStale(target);
-  PartialFolder partial(target);
+// What the page must know of a scene's pictures.
+struct ReportWriter::Pictures {
+  std::string folder;
+  bool truth = false, shadowed = false, emission = false;
+  std::vector<std::optional<std::string>> stems;  // of the variants' files
+  double floor_total = 0.0, floor_diffuse = 0.0, floor_specular = 0.0;
+  double scale = 0.1, coarse_below = 0.0;
 
-  Json page = ResultsObject(results);
-  std::vector<Job> jobs;
+  void Describe(Json& scene) const {
+    const auto stem = [](bool present, const char* name) { return present ? Json(name) : Json(nullptr); };
+    scene["folder"] = folder;
+    scene["truth"]["stem"] = stem(truth, "truth");
+    if (!scene["truth"]["shadow"].is_null()) scene["truth"]["shadow"]["stem"] = stem(shadowed, "truth-shadowed");
+    for (std::size_t v = 0; v < stems.size(); ++v) {
+      scene["variants"][v]["stem"] = stems[v] ? Json(*stems[v]) : Json(nullptr);
+    }
+    scene["emission"] = emission;
+    scene["floor"] = {{"total", floor_total}, {"diffuse", floor_diffuse}, {"specular", floor_specular}};
+    scene["scale"] = scale;
+    // What the files' rounding may amount to where the picture is darker than that.
+    if (truth) scene["coarse_below"] = coarse_below;
+  }
+};
+
+struct ReportWriter::State {
+  State(const fs::path& directory, std::size_t scene_count)
+      : partial(Normal(directory)), bytes(kMostBytes / static_cast<double>(std::max<std::size_t>(scene_count, 1))) {}
+
+  PartialFolder partial;
+  double bytes;  // for a scene at 512×512
   std::set<std::string> folders;
-  std::vector<Rounding> roundings(results.scenes.size());
-  tbb::parallel_for(std::size_t{0}, results.scenes.size(), [&](std::size_t s) {
-    const SceneResult& scene = results.scenes[s];
-    if (scene.truth) roundings[s] = ChooseRounding(scene, 100.0 * Floor(TotalRadiance(*scene.truth)));
-  });
-  for (std::size_t s = 0; s < results.scenes.size(); ++s) {
-    const SceneResult& scene = results.scenes[s];
-    Json& scene_json = page["scenes"][s];
-    const std::string folder = FileName(scene.name, &folders);
-    scene_json["folder"] = folder;
-    fs::create_directories(partial.path() / "images" / folder);
-    fs::create_directories(partial.path() / "data" / folder);
-    std::set<std::string> stems = {"truth", "truth-shadowed", "emission"};
-    if (scene.truth) jobs.push_back({&scene, &roundings[s], scene.truth, folder, "truth"});
-    scene_json["truth"]["stem"] = scene.truth ? Json("truth") : Json(nullptr);
-    if (scene.shadow) {
-      const bool present = scene.truth && scene.shadow->image;
-      scene_json["truth"]["shadow"]["stem"] = present ? Json("truth-shadowed") : Json(nullptr);
-      if (present) {
-        jobs.push_back({&scene, &roundings[s], scene.shadow->image, folder, "truth-shadowed", false, true});
-      }
-    }
-    for (std::size_t v = 0; v < scene.variants.size(); ++v) {
-      const VariantResult& variant = scene.variants[v];
-      const std::string stem = FileName(variant.name, &stems);
-      scene_json["variants"][v]["stem"] = variant.image ? Json(stem) : Json(nullptr);
-      if (variant.image) {
-        jobs.push_back({&scene, &roundings[s], variant.image, folder, stem, false, false, &variant});
-      }
-    }
-    scene_json["emission"] = scene.emission != nullptr;
-    if (scene.emission) {
-      auto image = std::make_shared<RadianceImage>();
-      image->width = scene.width;
-      image->height = scene.height;
-      image->diffuse = *scene.emission;
-      image->specular.assign(scene.emission->size(), glm::vec3(0.0f));
-      jobs.push_back({&scene, &roundings[s], image, folder, "emission", true});
-    }
-    if (scene.truth) {
-      const std::vector<glm::vec3> total = TotalRadiance(*scene.truth);
-      const double floor = Floor(total);
-      scene_json["floor"] = {{"total", floor},
-                             {"diffuse", Floor(scene.truth->diffuse)},
-                             {"specular", Floor(scene.truth->specular)}};
-      scene_json["scale"] = MapScale(scene, total, floor);
-      // What the files' rounding may amount to where the picture is darker than that.
-      scene_json["coarse_below"] = static_cast<double>(roundings[s].coarse_below);
-    } else {
-      scene_json["floor"] = {{"total", 0.0}, {"diffuse", 0.0}, {"specular", 0.0}};
-      scene_json["scale"] = 0.1;
-    }
-  }
+  std::vector<Pictures> scenes;
+};
 
-  std::mutex mutex;
-  std::size_t done = 0;
-  double most_bytes = 0.0;
-  for (const SceneResult& scene : results.scenes) {
-    most_bytes = std::max(most_bytes, kMostBytes * scene.width * scene.height / (512.0 * 512.0));
+ReportWriter::ReportWriter(const fs::path& directory, std::size_t scenes) {
+  CheckReportDirectory(directory);
+  RemoveStale(Normal(directory));
+  state_ = std::make_unique<State>(directory, scenes);
+}
+
+ReportWriter::~ReportWriter() = default;
+
+void ReportWriter::Add(const SceneResult& scene) {
+  const fs::path& root = state_->partial.path();
+  Pictures pictures;
+  pictures.folder = FileName(scene.name, &state_->folders);
+  fs::create_directories(root / "images" / pictures.folder);
+  fs::create_directories(root / "data" / pictures.folder);
+  Rounding rounding;
+  if (scene.truth) {
+    const std::vector<glm::vec3> total = TotalRadiance(*scene.truth);
+    pictures.floor_total = Floor(total);
+    pictures.floor_diffuse = Floor(scene.truth->diffuse);
+    pictures.floor_specular = Floor(scene.truth->specular);
+    pictures.scale = MapScale(scene, total, pictures.floor_total);
+    rounding = ChooseRounding(scene, 100.0 * pictures.floor_total);
+    pictures.coarse_below = static_cast<double>(rounding.coarse_below);
   }
-  // Every twelfth picture tells how many bits to spare before all are written.
-  const auto write = [&](std::size_t stride, int most_bits) {
-    tbb::parallel_for(std::size_t{0}, (jobs.size() + stride - 1) / stride, [&](std::size_t i) {
-      WriteImages(jobs[stride * i], most_bits, partial.path());
-      const std::lock_guard lock(mutex);
-      ++done;
-      if (progress && stride == 1) progress(static_cast<double>(done) / static_cast<double>(jobs.size()));
-    });
+  std::vector<Job> jobs;
+  const auto add = [&](std::shared_ptr<const RadianceImage> image, const std::string& stem, Job::Kind kind,
+                       const VariantResult* variant = nullptr) {
+    jobs.push_back({&scene, &rounding, std::move(image), pictures.folder, stem, kind, variant});
   };
-  int most_bits = kFewestBits;
-  for (; most_bits < kMostBits; ++most_bits) {
-    write(kSampleStride, most_bits);
-    if (static_cast<double>(kSampleStride) * BytesIn(partial.path()) <= most_bytes) break;
+  std::set<std::string> taken = {"truth", "truth-shadowed", "emission"};
+  pictures.truth = scene.truth != nullptr;
+  if (pictures.truth) add(scene.truth, "truth", Job::Kind::kTruth);
+  pictures.shadowed = pictures.truth && scene.shadow && scene.shadow->image;
+  if (pictures.shadowed) add(scene.shadow->image, "truth-shadowed", Job::Kind::kShadowed);
+  for (const VariantResult& variant : scene.variants) {
+    const std::string stem = FileName(variant.name, &taken);
+    pictures.stems.push_back(variant.image ? std::optional(stem) : std::nullopt);
+    if (variant.image) add(variant.image, stem, Job::Kind::kVariant, &variant);
   }
-  done = 0;
-  write(1, most_bits);
+  pictures.emission = scene.emission != nullptr;
+  if (pictures.emission) {
+    auto image = std::make_shared<RadianceImage>();
+    image->width = scene.width;
+    image->height = scene.height;
+    image->diffuse = *scene.emission;
+    image->specular.assign(scene.emission->size(), glm::vec3(0.0f));
+    add(image, "emission", Job::Kind::kEmission);
+  }
 
-  fs::create_directories(partial.path() / "plots");
-  for (std::size_t s = 0; s < results.scenes.size(); ++s) {
-    WritePlot(partial.path() / "plots" / (page["scenes"][s]["folder"].get<std::string>() + ".svg"),
-              std::span(results.scenes).subspan(s, 1), results.software);
+  // Every fifth picture tells how many bits to spare; the others follow.
+  constexpr std::size_t kStride = 5;
+  const double most = state_->bytes * scene.width * scene.height / (512.0 * 512.0);
+  int bits = kFewestBits;
+  for (;; ++bits) {
+    std::atomic<std::size_t> bytes{0};
+    tbb::parallel_for(std::size_t{0}, (jobs.size() + kStride - 1) / kStride,
+                      [&](std::size_t i) { bytes += WriteImages(jobs[kStride * i], bits, root); });
+    if (bits == kMostBits || static_cast<double>(kStride * bytes) <= most) break;
+  }
+  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+    if (i % kStride != 0) WriteImages(jobs[i], bits, root);
+  });
+  state_->scenes.push_back(std::move(pictures));
+}
+
+void ReportWriter::Finish(const Results& results) {
+  const fs::path& root = state_->partial.path();
+  Json page = ResultsObject(results);
+  fs::create_directories(root / "plots");
+  for (std::size_t s = 0; s < state_->scenes.size(); ++s) {
+    const Pictures& pictures = state_->scenes[s];
+    pictures.Describe(page["scenes"][s]);
+    WritePlot(root / "plots" / (pictures.folder + ".svg"), std::span(results.scenes).subspan(s, 1), results.software);
   }
   // No scene's folder has a blank.
-  if (results.scenes.size() > 1) WritePlot(partial.path() / "plots" / "all scenes.svg", results.scenes, results.software);
+  if (results.scenes.size() > 1) WritePlot(root / "plots" / "all scenes.svg", results.scenes, results.software);
 
-  WriteText(partial.path() / "results.json", ResultsJson(results));
-  WriteText(partial.path() / "results.csv", ResultsCsv(results));
+  WriteText(root / "results.json", ResultsJson(results));
+  WriteText(root / "results.csv", ResultsCsv(results));
   std::string html(ReportFile("index.html"));
   html = Substitute(std::move(html), "/*arealab:css*/", ReportFile("report.css"));
   html = Substitute(std::move(html), "/*arealab:d3*/", plot_library::kFiles[0].bytes());
@@ -448,8 +454,14 @@ void WriteReport(const Results& results, const fs::path& directory,
   html = Substitute(std::move(html), "/*arealab:js*/", ReportFile("report.js"));
   html = Substitute(std::move(html), "{\"arealab\": \"results\"}",
                     ScriptSafe(page.dump(-1, ' ', false, Json::error_handler_t::replace)));
-  WriteText(partial.path() / "index.html", html);
-  partial.MoveIntoPlace();
+  WriteText(root / "index.html", html);
+  state_->partial.MoveIntoPlace();
+}
+
+void WriteReport(const Results& results, const fs::path& directory) {
+  ReportWriter writer(directory, results.scenes.size());
+  for (const SceneResult& scene : results.scenes) writer.Add(scene);
+  writer.Finish(results);
 }
 
 std::string SweepPage(const std::string& results) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <string>
 
 #include "compare/results.h"
@@ -14,7 +14,7 @@ namespace arealab {
 // but an earlier report, or nothing can be written beside it. Creates its parents. Call it before long work.
 void CheckReportDirectory(const std::filesystem::path& directory);
 
-// Writes to a temporary folder beside `directory`, then renames; an earlier report there is replaced only
+// Writes to a temporary folder beside `directory`, which is renamed at the end; an earlier report there is replaced only
 // then, in one step.
 //   index.html               the page; opens from disk, offline
 //   results.json, results.csv
@@ -25,10 +25,24 @@ void CheckReportDirectory(const std::filesystem::path& directory);
 // VARIANT "truth-shadowed" is the truth with visibility, where a shadow matters; its values are within 0.8 % of
 // the computed ones, a fraction of their own error.
 // Names are the scene's and the variant's, with '_' for what a file name should not hold.
-// `progress` gets the fraction done, from one thread at a time. Throws InputError where the folder cannot be
-// written.
-void WriteReport(const Results& results, const std::filesystem::path& directory,
-                 const std::function<void(double)>& progress = {});
+class ReportWriter {
+ public:
+  // `scenes`: how many there will be. Both throw InputError where the folder cannot be written.
+  ReportWriter(const std::filesystem::path& directory, std::size_t scenes);
+  ~ReportWriter();  // of a report that was not finished nothing stays
+  // The pictures of the next scene of the results; they need not be kept after it. One call at a time, from any thread.
+  void Add(const SceneResult& scene);
+  // The scenes are those that were added, in that order.
+  void Finish(const Results& results);
+
+ private:
+  struct Pictures;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// All of it at once.
+void WriteReport(const Results& results, const std::filesystem::path& directory);
 
 // The page of `arealab sweep`; `results`: its results.json, safe within a script element.
 std::string SweepPage(const std::string& results);

@@ -78,7 +78,7 @@ Json VariantJson(const VariantResult& variant) {
 
 Json ShadowJson(const std::optional<ShadowResult>& shadow) {
   if (!shadow) return nullptr;
-  return {{"present", shadow->image != nullptr},
+  return {{"present", shadow->Matters()},
           {"light_lost", Number(shadow->light_lost)},
           {"bias", Number(shadow->bias)},
           {"rel_rmse", Number(shadow->rel_rmse)},
@@ -137,6 +137,13 @@ std::string WithSpread(const Estimate& ratio) {
 }
 
 }  // namespace
+
+void SceneResult::ReleaseImages() {
+  truth.reset();
+  emission.reset();
+  if (shadow) shadow->image.reset();
+  for (VariantResult& variant : variants) variant.image.reset();
+}
 
 nlohmann::ordered_json IsaObject(const std::map<std::string, GpuCost>& costs) {
   Json json = Json::object();

@@ -87,9 +87,11 @@ struct ShadowResult {
   double mean_error = kNotMeasured, p99_error = kNotMeasured;
   double seconds = kNotMeasured;
   bool cached = false;
-  std::shared_ptr<const RadianceImage> image;  // null where no shadow matters: rel_rmse below kLeastShadow
+  std::shared_ptr<const RadianceImage> image;
+
+  // A difference that could not be measured, where all light is lost, matters.
+  bool Matters() const { return !(rel_rmse < 1e-3); }
 };
-constexpr double kLeastShadow = 1e-3;
 
 struct SceneResult {
   std::string name, question, file, unit;  // unit: "W/(m² sr)" or "cd/m²"
@@ -105,6 +107,9 @@ struct SceneResult {
   std::shared_ptr<const std::vector<glm::vec3>> emission;  // radiance of emitters seen directly, per pixel
   std::vector<VariantResult> variants;
   std::vector<PairResult> pairs;
+
+  // Leaves the figures: of many scenes the images are what fills the memory.
+  void ReleaseImages();
 };
 
 struct Results {

@@ -3,17 +3,21 @@
 #include "compare/report.h"
 
 #include <fmt/format.h>
+#define IMATH_HALF_NO_LOOKUP_TABLE  // the header alone
+#include <Imath/half.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 
 #include "compare/image_files.h"
@@ -217,6 +221,46 @@ TEST(Images, PageHoldsTheValuesWithinTheStatedRoundingAndExrsAreClose) {
     }
   }
   for (const char* mode : {"raw", "=g", "-t"}) EXPECT_GT(modes[mode], 0) << mode;
+}
+
+// Against Imath's conversions, both ways: every half, and floats between and beyond them.
+TEST(Images, HalvesAreThoseOfOpenExr) {
+  HalfImage all;
+  all.width = 256;
+  all.height = 256;
+  for (auto& plane : all.planes) {
+    for (unsigned bits = 0; bits < 65536; ++bits) plane.push_back(static_cast<std::uint16_t>(bits));
+  }
+  const RadianceImage decoded = FromHalf(all);
+  for (unsigned bits = 0; bits < 65536; ++bits) {
+    half expected;
+    expected.setBits(static_cast<std::uint16_t>(bits));
+    const float value = decoded.diffuse[bits].x;
+    ASSERT_TRUE(value == static_cast<float>(expected) || (std::isnan(value) && expected.isNan())) << bits;
+  }
+  RadianceImage image;
+  image.width = image.height = 512;
+  std::mt19937 random(1);
+  while (image.diffuse.size() < 512 * 512) {
+    glm::vec3 v;
+    for (int c = 0; c < 3; ++c) {
+      // Half's range with some room, and every third in its middle between two halves.
+      const std::uint32_t bits = (random() & 0x8fffffffu) + 0x33000000u;
+      v[c] = std::clamp(std::bit_cast<float>(c == 2 ? (bits & ~0x1fffu) | 0x1000u : bits), -65504.0f, 65504.0f);
+    }
+    image.diffuse.push_back(v);
+  }
+  image.diffuse[0].x = 65504.0f;  // so that no exponent is taken out
+  image.specular = image.diffuse;
+  const HalfImage rounded = ToHalf(image);
+  ASSERT_EQ(rounded.exponent, 0);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const float v = image.diffuse[i][c];
+      const std::uint16_t expected = half(v).bits() == 0x8000 ? std::uint16_t{0} : half(v).bits();
+      ASSERT_EQ(rounded.planes[static_cast<std::size_t>(c)][i], expected) << v;
+    }
+  }
 }
 
 TEST(Images, RoundingByTheTruthKeepsDifferences) {
@@ -520,16 +564,41 @@ TEST(Report, ReplacesAnEarlierReportAsAWhole) {
   std::ofstream(folder / "report/left-over") << "from the first";
   // As an interrupted run leaves it: a process of that number cannot live.
   fs::create_directories(folder / ".report.partial-999999999/images");
-  std::vector<double> progress;
-  WriteReport(Small(), folder / "report", [&](double fraction) { progress.push_back(fraction); });
+  WriteReport(Small(), folder / "report");
   EXPECT_TRUE(fs::exists(folder / "report/index.html"));
   EXPECT_FALSE(fs::exists(folder / "report/left-over"));
   int entries = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path())) ++entries;
   EXPECT_EQ(entries, 1);
-  ASSERT_FALSE(progress.empty());
-  EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
-  EXPECT_EQ(progress.back(), 1.0);
+}
+
+TEST(Report, NothingStaysOfOneThatWasNotFinished) {
+  const Folder folder;
+  const Results results = Small();
+  {
+    ReportWriter writer(folder / "report", results.scenes.size());
+    writer.Add(results.scenes[0]);
+    EXPECT_FALSE(fs::exists(folder / "report"));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+// As `compare` does, which keeps one scene's images at a time.
+TEST(Report, IsTheSameWithoutTheImagesThatWereAdded) {
+  const Folder folder;
+  Results results = Small();
+  WriteReport(results, folder / "whole");
+  ReportWriter writer(folder / "piecewise", results.scenes.size());
+  for (SceneResult& scene : results.scenes) {
+    writer.Add(scene);
+    scene.ReleaseImages();
+  }
+  writer.Finish(results);
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "whole")) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path file = fs::relative(entry.path(), folder / "whole");
+    EXPECT_EQ(Read(folder / "piecewise" / file.string()), Read(entry.path())) << file;
+  }
 }
 
 TEST(Report, RefusesAFolderThatHoldsSomethingElse) {
