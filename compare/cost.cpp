@@ -14,6 +14,7 @@
 #include <fstream>
 #include <mutex>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 #include "compare/content_hash.h"
@@ -30,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes whenever the harness, the compilers' options or the cache's layout change.
-constexpr int kCostVersion = 1;
+constexpr int kCostVersion = 2;
 
 constexpr std::array kGpus = {"tahiti",   "pitcairn", "verde",  "bonaire", "hawaii", "tonga",  "fiji",    "polaris10",
                               "polaris11", "polaris12", "vega10", "vega12",  "vega20", "raven",  "renoir",  "navi10",
@@ -76,9 +77,13 @@ std::string FindDriver() {
   return "";
 }
 
+std::string_view Bytes(std::span<const std::uint32_t> words) {
+  return {reinterpret_cast<const char*>(words.data()), words.size_bytes()};
+}
+
 void Append(std::vector<char>& bytes, std::span<const std::uint32_t> words) {
-  const auto* begin = reinterpret_cast<const char*>(words.data());
-  bytes.insert(bytes.end(), begin, begin + words.size_bytes());
+  const std::string_view more = Bytes(words);
+  bytes.insert(bytes.end(), more.begin(), more.end());
 }
 
 void Append(std::vector<char>& bytes, std::size_t count) {
@@ -177,14 +182,14 @@ std::vector<std::uint32_t> CostMeter::Translate(const Text& text) {
   throw InputError(fmt::format("{}: glslang says \"{}\"; expected SPIR-V", text.who, FirstLine(result.log)));
 }
 
-fs::path CostMeter::CacheFile(const Text& text, const Text& vertex, const std::string& gpu) const {
+fs::path CostMeter::CacheFile(std::string_view vertex, std::string_view fragment, int targets, const std::string& gpu) const {
   ContentHash hash;
   hash.Value(kCostVersion);
   hash.Text(compilers_);
   hash.Text(gpu);
-  hash.Value(text.targets);
-  hash.Text(vertex.source.text);
-  hash.Text(text.source.text);
+  hash.Value(targets);
+  hash.Text(std::string(vertex));
+  hash.Text(std::string(fragment));
   return cache_ / (hash.Name() + ".isa");
 }
 
@@ -216,9 +221,9 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
   struct Entry {
     Text text;
     std::vector<std::uint32_t> words;
-    std::vector<ShaderCost> costs;  // by GPU
-    std::vector<fs::path> files;
-    bool known = true;
+    std::vector<ShaderCost> costs;                   // by GPU
+    std::vector<fs::path> files, word_files;         // the costs under the text's name, and under the words'
+    const std::vector<ShaderCost>* found = nullptr;  // by whoever has the same words
     std::vector<std::pair<std::size_t, std::string>> places;  // variant, "core", "full" or a path
   };
   const std::vector<Effect> effects = SceneEffects(scene);
@@ -230,7 +235,7 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     Text text{Expand(library, main, variants[v], defines, Precision::kFloat, scene.brdf), false, targets,
               fmt::format("{} ({})", variants[v].ShortName(), place)};
     const auto [at, added] = index.emplace(text.source.text, entries.size());
-    if (added) entries.push_back({std::move(text), {}, {}, {}, true, {}});
+    if (added) entries.push_back({std::move(text), {}, {}, {}, {}, nullptr, {}});
     entries[at->second].places.emplace_back(v, place);
     return at->first;
   };
@@ -247,18 +252,20 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     }
   }
 
-  for (Entry& entry : entries) {
+  const auto load = [&](Entry& entry, std::vector<fs::path>& files, std::string_view vertex_key, std::string_view key) {
     entry.costs.resize(gpus_.size());
+    bool known = true;
     for (std::size_t g = 0; g < gpus_.size(); ++g) {
-      entry.files.push_back(CacheFile(entry.text, vertex, gpus_[g]));
-      std::ifstream in(entry.files.back());
+      files.push_back(CacheFile(vertex_key, key, entry.text.targets, gpus_[g]));
+      std::ifstream in(files.back());
       std::string line;
-      entry.known = std::getline(in, line) && Parse(line, entry.costs[g]) && entry.known;
+      known = std::getline(in, line) && Parse(line, entry.costs[g]) && known;
     }
-  }
+    return known;
+  };
   std::vector<Entry*> missing;
   for (Entry& entry : entries) {
-    if (!entry.known) missing.push_back(&entry);
+    if (!load(entry, entry.files, vertex.source.text, entry.text.source.text)) missing.push_back(&entry);
   }
   if (!missing.empty()) {
     std::mutex mutex;
@@ -274,21 +281,35 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
       missing[i]->words = Translate(missing[i]->text);
       report(1);
     });
+    // Half of the texts differ in what no function of theirs asks for, an effect or the scene's other shapes.
+    std::vector<Entry*> compiled;
+    std::map<fs::path, const Entry*> by_words;
+    for (Entry* entry : missing) {
+      const bool known = load(*entry, entry->word_files, Bytes(vertex_words), Bytes(entry->words));
+      const auto [first, added] = by_words.emplace(entry->word_files.front(), entry);
+      entry->found = &first->second->costs;
+      if (added && !known) compiled.push_back(entry);
+    }
+    report((missing.size() - compiled.size()) * gpus_.size());
     // A batch is a process, which costs a fifth of a second to start: as few as keep all cores busy.
     constexpr std::size_t kLeast = 12;
     const std::size_t cores = std::max(std::thread::hardware_concurrency(), 1u);
-    const std::size_t batches = std::clamp((cores + gpus_.size() - 1) / gpus_.size(), std::size_t{1}, missing.size() / kLeast + 1);
+    const std::size_t batches = std::clamp((cores + gpus_.size() - 1) / gpus_.size(), std::size_t{1}, compiled.size() / kLeast + 1);
     tbb::parallel_for(std::size_t{0}, batches * gpus_.size(), [&](std::size_t i) {
-      const std::size_t g = i / batches, first = i % batches * missing.size() / batches,
-                        last = (i % batches + 1) * missing.size() / batches;
+      const std::size_t g = i / batches, first = i % batches * compiled.size() / batches,
+                        last = (i % batches + 1) * compiled.size() / batches;
       std::vector<Job> jobs;
       for (std::size_t m = first; m < last; ++m) {
-        jobs.push_back({&missing[m]->text, &missing[m]->words, &vertex_words, &missing[m]->costs[g]});
+        jobs.push_back({&compiled[m]->text, &compiled[m]->words, &vertex_words, &compiled[m]->costs[g]});
       }
       Compile(jobs, gpus_[g]);
-      for (std::size_t m = first; m < last; ++m) Store(missing[m]->files[g], missing[m]->costs[g]);
+      for (std::size_t m = first; m < last; ++m) Store(compiled[m]->word_files[g], compiled[m]->costs[g]);
       report(last - first);
     });
+    for (Entry* entry : missing) {
+      if (entry->found != &entry->costs) entry->costs = *entry->found;
+      for (std::size_t g = 0; g < gpus_.size(); ++g) Store(entry->files[g], entry->costs[g]);
+    }
   }
 
   std::vector<std::map<std::string, GpuCost>> found(variants.size());

@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compare/results.h"
@@ -37,7 +38,7 @@ struct CostTools {
 
 class CostMeter {
  public:
-  // Results are kept under `cache` by content: shader text, compilers' versions, GPU. Throws InputError with one line where
+  // Results are kept under `cache` by content: shader text (and its SPIR-V, which many texts share), compilers' versions, GPU. Throws InputError with one line where
   // a tool is missing or a GPU has another name.
   CostMeter(std::vector<std::string> gpus, std::filesystem::path cache, CostTools tools = CostTools::FromEnvironment());
 
@@ -56,7 +57,7 @@ class CostMeter {
   struct Text;
   struct Job;
   static std::vector<std::uint32_t> Translate(const Text& text);
-  std::filesystem::path CacheFile(const Text& text, const Text& vertex, const std::string& gpu) const;
+  std::filesystem::path CacheFile(std::string_view vertex, std::string_view fragment, int targets, const std::string& gpu) const;
   std::vector<std::pair<std::string, std::string>> WorkerEnvironment(const std::string& gpu) const;
   void Compile(std::span<const Job> jobs, const std::string& gpu) const;
   static void Store(const std::filesystem::path& file, const ShaderCost& cost);
