@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/progress.h"
 #include "compare/claims.h"
+#include "compare/page_parts.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -31,14 +32,19 @@ void RunClaims(const ClaimsArguments& arguments) {
   }
   const std::unique_ptr<Context> context = arguments.common.MakeContext();
   ClaimBench bench(*context, library, meter ? &*meter : nullptr);
+  std::vector<ClaimsPage> pages;
   for (const ClaimSource& source : sources) {
     const std::vector<CheckedClaim> checked = CheckClaims(source, bench);
     fmt::print("{}: {}\n", source.citation, source.title);
     for (const auto& [claim, finding] : checked) fmt::print("  {}: {}\n{}", claim.where, claim.sentence, FindingText(finding));
-    if (!arguments.out.empty()) WriteClaimsPage(source, checked, arguments.out);
+    pages.push_back(MakeClaimsPage(source, checked));
   }
   if (!no_cost.empty()) fmt::print("without cycles: {}\n", no_cost);
+  LinkClaimsPages(pages);
   if (!arguments.out.empty()) {
+    for (const ClaimsPage& page : pages) {
+      ReplaceFile(std::filesystem::path(arguments.out) / fmt::format("claims-{}.html", page.name), page.html);
+    }
     fmt::print("pages: {}\n", (std::filesystem::absolute(arguments.out) / fmt::format("claims-{}.html", sources[0].name)).lexically_normal().string());
   }
 }

@@ -56,6 +56,13 @@ Limit ParseLimit(const std::string& text) {
   return limit;
 }
 
+std::vector<ClaimSource> ChosenSources(const CompareArguments& arguments) {
+  if (arguments.sources.empty()) return ClaimSources();
+  std::vector<ClaimSource> sources;
+  for (const std::string& name : arguments.sources) sources.push_back(ClaimSources(name).at(0));
+  return sources;
+}
+
 std::vector<Variant> ChosenVariants(const CompareArguments& arguments, const std::vector<Technique>& techniques) {
   if (arguments.all_variants && !arguments.techniques.empty()) {
     throw InputError("--all-variants and --technique exclude each other; expected one of them");
@@ -65,13 +72,10 @@ std::vector<Variant> ChosenVariants(const CompareArguments& arguments, const std
   }
   std::vector<Variant> variants;
   if (arguments.techniques.empty()) {
-    std::vector<ClaimSource> sources;
-    for (const std::string& name : arguments.sources) {
-      for (const ClaimSource& source : ClaimSources(name)) sources.push_back(source);
-    }
+    const std::vector<ClaimSource> sources = ChosenSources(arguments);
     variants = arguments.all_variants ? AllVariants(techniques) : DefaultVariants(techniques);
     std::erase_if(variants, [&](const Variant& variant) {
-      if (sources.empty()) return variant.technique->yardstick && !arguments.all_variants;
+      if (arguments.sources.empty()) return variant.technique->yardstick && !arguments.all_variants;
       return std::none_of(sources.begin(), sources.end(), [&](const ClaimSource& source) { return IsFrom(*variant.technique, source); });
     });
     return variants;
@@ -168,6 +172,13 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
     const std::unique_ptr<Context> context = arguments.common.MakeContext();
     results = Compare(*context, library, options);
     if (results.no_isa.empty()) results.no_isa = no_isa;
+    if (arguments.techniques.empty() && arguments.common.glsl.empty()) {
+      progress.Show("claims", 1.0);
+      const std::string compilers = options.cost ? options.cost->compilers() : "";
+      results.claims = CachedClaimsPages(ChosenSources(arguments), context->renderer() + context->version() + compilers, options.cache,
+                                         [&] { return std::make_unique<ClaimBench>(*context, library, options.cost.get()); });
+      LinkClaimsPages(results.claims, "index.html");
+    }
     results.command = command_line;
     results.version = AREALAB_VERSION;
     results.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
@@ -194,7 +205,7 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
                       "a variant, e.g. ltc, ltc@published or ltc+clip=switch; may be given several times "
                       "(default: each technique's default and published form)");
   command->add_option("--source", arguments->sources,
-                      "the techniques of one source: hill, mayaux, light_field, drobot or oat; may be given several times");
+                      "the techniques and claims of one source: hill, mayaux, light_field, drobot or oat; may be given several times");
   command->add_flag("--all-variants", arguments->all_variants, "every combination of every technique's options");
   command->add_option("--limit", arguments->limits,
                       "METRIC=X: exit with status 1 where a variant's total error exceeds X, e.g. rel_rmse=0.05");

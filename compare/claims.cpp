@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
 
+#include "compare/content_hash.h"
 #include "compare/page_parts.h"
 #include "glsl/variant.h"
 #include "scenes/error.h"
@@ -137,6 +142,8 @@ figure { margin: 0; } svg { width: 100%; height: auto; display: block; } svg tex
 @media (max-width: 760px) { article { grid-template-columns: minmax(0, 1fr); padding: 1rem; } .key { white-space: normal; } }
 )";
 
+constexpr const char* kEmptyNav = "<nav></nav>";
+
 }  // namespace
 
 std::string FindingText(const Finding& finding) {
@@ -146,18 +153,19 @@ std::string FindingText(const Finding& finding) {
   return text + "\n";
 }
 
-void WriteClaimsPage(const ClaimSource& source, const std::vector<CheckedClaim>& checked, const std::filesystem::path& folder) {
+ClaimsPage MakeClaimsPage(const ClaimSource& source, const std::vector<CheckedClaim>& checked) {
+  ClaimsPage page{.name = source.name, .citation = source.citation, .title = source.title, .html = ""};
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
       "<title>{0}: the source's claims</title><link rel=\"icon\" href=\"data:,\"><style>{1}</style></head>\n<body>\n"
       "<p class=\"where\">AreaLab · the source's claims</p><h1>{0}: {2}</h1>\n"
-      "<p class=\"lede\">What the text says, in our words, beside what we find. Every figure was computed from the shader text when this page was made; a verdict follows from the figures by the rule that stands with it.</p>\n<nav>",
-      Escaped(source.citation), kClaimsStyle, Escaped(source.title));
-  for (const ClaimSource& other : ClaimSources()) {
-    html += other.name == source.name ? fmt::format("<b>{}</b>", Escaped(other.citation)) : fmt::format("<a href=\"claims-{}.html\">{}</a>", other.name, Escaped(other.citation));
-  }
-  html += "</nav>\n";
+      "<p class=\"lede\">What the text says, in our words, beside what we find. Every figure was computed from the shader text when this page was made; a verdict follows from the figures by the rule that stands with it.</p>\n{3}\n",
+      Escaped(source.citation), kClaimsStyle, Escaped(source.title), kEmptyNav);
   for (const auto& [claim, finding] : checked) {
+    ++(finding.verdict == Verdict::kHolds    ? page.holds
+       : finding.verdict == Verdict::kPartly ? page.partly
+       : finding.verdict == Verdict::kFails  ? page.fails
+                                             : page.unknown);
     const std::string plot = finding.plot.curves.empty() ? "" : PlotSvg(finding.plot);
     html += fmt::format("<article{}><div><span class=\"verdict v{}\">{}</span><span class=\"where\">{}</span><h2>{}</h2><dl>", plot.empty() ? " class=\"plain\"" : "",
                         static_cast<int>(finding.verdict), VerdictText(finding.verdict), Escaped(claim.where), Escaped(claim.sentence));
@@ -166,7 +174,58 @@ void WriteClaimsPage(const ClaimSource& source, const std::vector<CheckedClaim>&
     if (!finding.note.empty()) html += fmt::format("<p class=\"note\">{}</p>", Escaped(finding.note));
     html += fmt::format("<code>{}</code></div>{}</article>\n", Escaped(claim.command), plot);
   }
-  ReplaceFile(folder / fmt::format("claims-{}.html", source.name), html + "</body></html>\n");
+  page.html = html + "</body></html>\n";
+  return page;
+}
+
+void LinkClaimsPages(std::vector<ClaimsPage>& pages, const std::string& report) {
+  for (ClaimsPage& page : pages) {
+    std::string nav = report.empty() ? "" : fmt::format("<a href=\"{}\">the report</a>", report);
+    for (const ClaimsPage& other : pages) {
+      nav += &other == &page ? fmt::format("<b>{}</b>", Escaped(other.citation))
+                             : fmt::format("<a href=\"claims-{}.html\">{}</a>", other.name, Escaped(other.citation));
+    }
+    const std::size_t at = page.html.find(kEmptyNav);
+    if (at != std::string::npos) page.html.replace(at, std::strlen(kEmptyNav), "<nav>" + nav + "</nav>");
+  }
+}
+
+namespace {
+
+// A line of the verdicts' counts, then the page.
+std::optional<ClaimsPage> ReadClaimsPage(const ClaimSource& source, const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  ClaimsPage page{.name = source.name, .citation = source.citation, .title = source.title, .html = ""};
+  if (!(in >> page.holds >> page.partly >> page.fails >> page.unknown) || in.get() != '\n') return std::nullopt;
+  page.html.assign(std::istreambuf_iterator<char>(in), {});
+  return page.html.ends_with("</html>\n") ? std::optional(page) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<ClaimsPage> CachedClaimsPages(const std::vector<ClaimSource>& sources, const std::string& platform,
+                                          const std::filesystem::path& cache, const std::function<std::unique_ptr<ClaimBench>()>& bench) {
+  ContentHash hash;
+  std::ifstream program("/proc/self/exe", std::ios::binary);  // shader text and tables are in it
+  hash.Text(std::string(std::istreambuf_iterator<char>(program), {}));
+  hash.Text(platform);
+  std::unique_ptr<ClaimBench> made;
+  std::vector<ClaimsPage> pages;
+  for (const ClaimSource& source : sources) {
+    const std::filesystem::path file = cache / fmt::format("{}-{}.claims", hash.Name(), source.name);
+    std::optional<ClaimsPage> page = ReadClaimsPage(source, file);
+    if (!page) {
+      if (!made) made = bench();
+      page = MakeClaimsPage(source, CheckClaims(source, *made));
+      try {
+        ReplaceFile(file, fmt::format("{} {} {} {}\n{}", page->holds, page->partly, page->fails, page->unknown, page->html));
+      } catch (const InputError&) {
+        // A folder that cannot be written to costs the storing, not the page.
+      }
+    }
+    pages.push_back(std::move(*page));
+  }
+  return pages;
 }
 
 std::vector<double> Steps(double first, double last, int count) {

@@ -11,6 +11,7 @@
 #include "compare/context.h"
 #include "compare/cost.h"
 #include "compare/point_shader.h"
+#include "compare/results.h"
 #include "glsl/shader_library.h"
 #include "glsl/technique.h"
 
@@ -99,8 +100,18 @@ std::vector<CheckedClaim> CheckClaims(const ClaimSource& source, ClaimBench& ben
 std::string FindingText(const Finding& finding);
 std::string VerdictText(Verdict verdict);
 
-// Writes folder/claims-NAME.html, a page that stands alone.
-void WriteClaimsPage(const ClaimSource& source, const std::vector<CheckedClaim>& checked, const std::filesystem::path& folder);
+// The page of one source, as yet without links.
+ClaimsPage MakeClaimsPage(const ClaimSource& source, const std::vector<CheckedClaim>& checked);
+
+// Lets each page lead to the others and, where one is named, to the report.
+void LinkClaimsPages(std::vector<ClaimsPage>& pages, const std::string& report = "");
+
+// The sources' pages as yet without links, from the folder where this program left them before, else computed and
+// stored. `bench` is called once at
+// most, and only where a page is missing; its shader text is the program's own, its context and compilers are those of `platform`,
+// any text that tells them from others.
+std::vector<ClaimsPage> CachedClaimsPages(const std::vector<ClaimSource>& sources, const std::string& platform,
+                                          const std::filesystem::path& cache, const std::function<std::unique_ptr<ClaimBench>()>& bench);
 
 // Small tools for the files of claims.
 std::vector<double> Steps(double first, double last, int count);  // evenly spaced, both ends

@@ -18,6 +18,7 @@
 #include <string>
 #include <string_view>
 
+#include "compare/claims.h"
 #include "compare/image_files.h"
 #include "compare/metrics.h"
 #include "compare/page_data.h"
@@ -436,6 +437,9 @@ void ReportWriter::Add(const SceneResult& scene) {
 void ReportWriter::Finish(const Results& results) {
   const fs::path& root = state_->partial.path();
   Json page = ResultsObject(results);
+  page["sources"] = Json::array();
+  for (const ClaimSource& source : ClaimSources()) page["sources"].push_back(source.citation);
+  for (const ClaimsPage& claims : results.claims) WriteText(root / fmt::format("claims-{}.html", claims.name), claims.html);
   fs::create_directories(root / "plots");
   for (std::size_t s = 0; s < state_->scenes.size(); ++s) {
     const Pictures& pictures = state_->scenes[s];

@@ -172,6 +172,16 @@ nlohmann::ordered_json ResultsObject(const Results& results) {
   json["no_isa"] = results.no_isa.empty() ? Json(nullptr) : Json(results.no_isa);
   json["scenes"] = Json::array();
   for (const SceneResult& scene : results.scenes) json["scenes"].push_back(SceneJson(scene));
+  json["claims"] = Json::array();
+  for (const ClaimsPage& page : results.claims) {
+    json["claims"].push_back({{"source", page.name},
+                              {"citation", page.citation},
+                              {"title", page.title},
+                              {"holds", page.holds},
+                              {"partly", page.partly},
+                              {"fails", page.fails},
+                              {"unknown", page.unknown}});
+  }
   return json;
 }
 

@@ -112,6 +112,13 @@ struct SceneResult {
   void ReleaseImages();
 };
 
+// What one source's text says, checked; compare/claims.h.
+struct ClaimsPage {
+  std::string name, citation, title;
+  int holds = 0, partly = 0, fails = 0, unknown = 0;  // claims by verdict
+  std::string html;                                   // claims-NAME.html, a page that stands alone
+};
+
 struct Results {
   std::string command;                         // that made them
   std::string version;                         // AreaLab's
@@ -122,6 +129,7 @@ struct Results {
   std::string compilers;                       // that the figures of `isa` come from
   std::string no_isa;                          // why there are none
   std::vector<SceneResult> scenes;
+  std::vector<ClaimsPage> claims;
 };
 
 // results.json: the schema of design.md, version 1, indented; null where not finite or not measured.

@@ -118,8 +118,7 @@ std::vector<RepresentativePointErrors> RerunDrobotPoints(int lights, unsigned se
   return results;
 }
 
-std::vector<ClippedArea> MayauxAreaCurve(int steps, double azimuth) {
-  const glm::dvec3 point(0.0, 0.0, 1.0);
+std::vector<ClippedArea> MayauxAreaCurve(int steps, double azimuth, const glm::dvec3& point) {
   const glm::dvec2 half(1.0);
   const std::array<glm::dvec2, 4> corners{{{1.0, 1.0}, {-1.0, 1.0}, {-1.0, -1.0}, {1.0, -1.0}}};
   std::vector<ClippedArea> curve;

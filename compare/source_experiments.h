@@ -1,6 +1,7 @@
 // The sources' own experiments rerun, in double, from the shading text itself.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,13 @@ struct RepresentativePointErrors {
 };
 std::vector<RepresentativePointErrors> RerunDrobotPoints(int lights = 600, unsigned seed = 5);
 
-// The area that Mayaux's clipping keeps [2017]: a square of half size 1 one metre above the point of a surface that turns, its normal within the
-// plane through the square's centre line and the direction at `azimuth` degrees from the square's x axis (45: a diagonal); the share of its area that his clipping keeps and the share that is above the horizon.
+// The area that Mayaux's clipping keeps [2017]: of a square of half size 1 in the plane z = 0, seen from `point` of a surface that turns,
+// its normal within the plane through the square's axis and the direction at `azimuth` degrees from its x axis (45: a diagonal).
+// Shares of the square's area.
 struct ClippedArea {
   double degrees = 0.0;                                  // of the surface's normal from the light's, 0: facing
-  double documented = 0.0, printed = 0.0, exact = 0.0;  // segment=documented, segment=printed, the truth
+  double documented = 0.0, printed = 0.0, exact = 0.0;  // segment=documented, segment=printed, what is above the horizon
 };
-std::vector<ClippedArea> MayauxAreaCurve(int steps = 180, double azimuth = 45.0);
+std::vector<ClippedArea> MayauxAreaCurve(int steps = 180, double azimuth = 45.0, const glm::dvec3& point = {0.0, 0.0, 1.0});
 
 }  // namespace arealab

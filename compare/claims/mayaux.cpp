@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compare/claims.h"
+#include "compare/source_experiments.h"
 
 namespace arealab {
 namespace {
@@ -45,6 +46,45 @@ Finding AreaIsContinuous(ClaimBench& bench) {
   return found;
 }
 
+// The surface's plane upright through the square's middle, turning about the square's axis: half of the light is above it at any turn.
+Finding AreaBounces(ClaimBench&) {
+  Finding found;
+  found.plot = {"turn of an upright plane, degrees", "share of the light's area that is kept", {{"his rectangle", {}}, {"exact", {}}}};
+  double least = 1.0, most = 0.0, least_exact = 1.0, most_exact = 0.0;
+  for (const double turn : Steps(0.0, 180.0, 181)) {
+    const ClippedArea cut = MayauxAreaCurve(2, turn).at(1);
+    found.plot.curves[0].points.emplace_back(turn, cut.documented);
+    found.plot.curves[1].points.emplace_back(turn, cut.exact);
+    least = std::min(least, cut.documented), most = std::max(most, cut.documented);
+    least_exact = std::min(least_exact, cut.exact), most_exact = std::max(most_exact, cut.exact);
+  }
+  found.figures = {{"the kept area swings by", 100.0 * (most - least), "% of the light's"}, {"the exact one by", 100.0 * (most_exact - least_exact), "%"}};
+  found.verdict = most - least > 0.1 && most_exact - least_exact < 1e-6 ? Verdict::kHolds : Verdict::kFails;
+  found.note = "It grows until the plane passes through two corners, where it turns back at once.";
+  return found;
+}
+
+Finding AreaIsGoodEnough(ClaimBench&) {
+  Finding found;
+  found.plot = {"tilt of the plane, degrees", "share of the light's area that is kept", {{"his rectangle, about the diagonal", {}}, {"exact", {}}}};
+  double mean = 0.0, largest = 0.0;
+  int count = 0;
+  for (const double azimuth : Steps(0.0, 45.0, 10)) {
+    for (const ClippedArea& cut : MayauxAreaCurve(180, azimuth)) {
+      mean += std::abs(cut.documented - cut.exact);
+      largest = std::max(largest, std::abs(cut.documented - cut.exact));
+      ++count;
+      if (azimuth < 45.0) continue;
+      found.plot.curves[0].points.emplace_back(cut.degrees, cut.documented);
+      found.plot.curves[1].points.emplace_back(cut.degrees, cut.exact);
+    }
+  }
+  mean /= count;
+  found.figures = {{"mean difference from the exact share, over tilts and turns", 100.0 * mean, "% of the light's area"}, {"largest, a diagonal cut", 100.0 * largest, "%"}};
+  found.verdict = largest < 0.1 ? Verdict::kHolds : mean < 0.1 ? Verdict::kPartly : Verdict::kFails;
+  return found;
+}
+
 Finding NoConditionsAreCheaper(ClaimBench& bench) {
   Finding found;
   if (!bench.has_cost()) {
@@ -65,6 +105,10 @@ ClaimSource MayauxClaims() {
   return {"mayaux", "Mayaux 2017", "Adding Area Lights",
           {{"Fake Clipping", "The area returned is continuous: nothing jumps as the plane turns.", "the largest change shrinks to a fifth as steps shrink to a tenth",
             "arealab stress --technique mayaux@published", AreaIsContinuous},
+           {"Fake Clipping", "The area bounces: it stops growing and shrinks again, as the plane turns.", "the kept area swings by more than a tenth where the exact one stays",
+            "arealab claims --source mayaux", AreaBounces},
+           {"Fake Clipping", "A rectangle approximates the cut well enough.", "the share that is kept is off by less than a tenth at any tilt; partly where it is in the mean",
+            "arealab claims --source mayaux", AreaIsGoodEnough},
            {"Fake Clipping", "Clipping without conditions avoids an expensive routine.", "it takes fewer cycles than a technique that clips side by side",
             "arealab cost --gpu bonaire --technique mayaux@published --technique light_field+clip=stream", NoConditionsAreCheaper}}};
 }

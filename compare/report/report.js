@@ -30,6 +30,13 @@ const variantNamed = (scene, name) => scene.variants.find((v) => v.name === name
 const shadowOf = (scene) => scene.truth.shadow && scene.truth.shadow.stem ? scene.truth.shadow : null;
 const label = (scene, name) => name === TRUTH ? (scene.truth.visibility ? "truth, with shadows" : "truth") : name === SHADOWED ? "truth, shadowed" : (variantNamed(scene, name) || { short_name: name }).short_name || name;
 
+// The source whose technique a variant is: what its citation names, as `compare --source` takes it.
+const OTHERS = "Others and yardsticks";
+const SOURCES = [...(results.sources || []), OTHERS];
+const sourceOf = (v) => SOURCES.find((s) => `; ${v.citation || ""}`.includes(`; ${s}`)) || OTHERS;
+const bySource = (variants) => SOURCES.map((s) => [s, variants.filter((v) => sourceOf(v) === s)]).filter(([, list]) => list.length);
+const chosen = (v) => !state.source || sourceOf(v) === state.source;
+
 // Percent with about three figures; `tight` for matrix cells, at most four characters.
 function percent(v, tight) {
   if (!known(v)) return "–";
@@ -247,7 +254,7 @@ function paintMap(canvas, kind, a, b, lobe, floor, range, log) {
 
 const state = { scene: "", a: "", b: TRUTH, lobe: "total", map: "signed", log: true, range: 0, ev: 0, wipe: 0.5,
                 zoom: 0, x: 0, y: 0, px: -1, py: -1, thumbs: "pictures", sort: "total", down: false,
-                cost: "", metric: "rel_rmse", xlog: true, ylog: true, off: "" };
+                cost: "", metric: "rel_rmse", xlog: true, ylog: true, off: "", source: "" };
 const DEFAULTS = { ...state };
 let scene = null;
 let images = new Map();  // variant name, TRUTH or "emission" → decoded image of the current scene
@@ -262,6 +269,7 @@ function readHash() {
     else state[key] = text === null ? fallback : text;
   }
   if (!LOBES.includes(state.lobe)) state.lobe = "total";
+  if (!SOURCES.includes(state.source)) state.source = "";
   if (!["signed", "magnitude"].includes(state.map)) state.map = "signed";
   if (!["pictures", "signed", "magnitude"].includes(state.thumbs)) state.thumbs = "pictures";
   if (!ERRORS.some(([key]) => key === state.metric)) state.metric = "rel_rmse";
@@ -342,13 +350,17 @@ function buildOverview() {
   for (const s of scenes) for (const v of s.variants) if (!names.includes(v.name)) names.push(v.name);
   const section = h("section", { id: "overview", "aria-labelledby": "overview-heading" });
   const lobes = segments("Lobe of the overview", LOBES.map((l) => [l, l]), state.lobe, (l) => set({ lobe: l }));
+  const holderOf = (name) => scenes.map((s) => variantNamed(s, name)).find(Boolean);
+  const present = bySource(names.map(holderOf)).map(([s]) => s);
+  const source = h("select", { "aria-label": "Source", onchange: (e) => set({ source: e.target.value }) }, h("option", { value: "", text: "all sources" }), present.map((s) => h("option", { value: s, text: s })));
   const matrix = h("div", { class: "matrix" + (scenes.length > 14 ? " vertical" : ""), role: "table" });
-  section.append(h("div", { class: "head" }, h("h2", { id: "overview-heading", text: "Error at a glance" }), lobes,
+  section.append(h("div", { class: "head" }, h("h2", { id: "overview-heading", text: "Error at a glance" }), lobes, source,
     h("p", { class: "note", text: "Relative RMSE against ground truth, in percent; the deeper the colour, the larger the error, by decades from 0.01 to 100 %. Choose a cell to see where the error is." })),
     h("div", { class: "card" }, matrix));
 
   section.refresh = () => {
     press(lobes, state.lobe);
+    source.value = state.source;
     const wide = !matchMedia("(max-width: 720px)").matches;
     matrix.style.gridTemplateColumns = (wide ? "minmax(7rem, 15rem) " : "") + `repeat(${scenes.length}, minmax(0, 1fr))`;
     const error = (s, name) => { const v = variantNamed(s, name); return v && v.supported ? v.error[state.lobe].rel_rmse : undefined; };
@@ -362,19 +374,22 @@ function buildOverview() {
     for (const s of scenes) {
       matrix.append(h("span", { class: "column", "aria-current": String(s === scene) }, h("a", { href: sceneLink(s.name), text: s.name, title: s.question })));
     }
-    for (const name of rows) {
-      const holder = scenes.map((s) => variantNamed(s, name)).find(Boolean);
-      matrix.append(h("span", { class: "name", title: `${holder.summary} ${holder.name !== holder.short_name ? holder.name : ""}`, text: holder.short_name || name }));
-      for (const s of scenes) {
-        const v = variantNamed(s, name);
-        if (!v || !v.supported) {
-          matrix.append(h("span", { class: "cell none", title: v ? v.reason : "not run", text: "–", "aria-label": "not supported" }));
-          continue;
-        }
-        const value = v.error[state.lobe].rel_rmse;
-        matrix.append(h("a", { class: "cell" + (v.within_truth_error ? " tied" : "") + hot(value), href: sceneLink(s.name, { a: name }), style: { "--t": heat(value) },
+    for (const [group, members] of bySource(rows.map(holderOf).filter(chosen))) {
+      matrix.append(h("span", { class: "source", text: group }));
+      for (const { name } of members) {
+        const holder = holderOf(name);
+        matrix.append(h("span", { class: "name", title: `${holder.summary} ${holder.name !== holder.short_name ? holder.name : ""}`, text: holder.short_name || name }));
+        for (const s of scenes) {
+          const v = variantNamed(s, name);
+          if (!v || !v.supported) {
+            matrix.append(h("span", { class: "cell none", title: v ? v.reason : "not run", text: "–", "aria-label": "not supported" }));
+            continue;
+          }
+          const value = v.error[state.lobe].rel_rmse;
+          matrix.append(h("a", { class: "cell" + (v.within_truth_error ? " tied" : "") + hot(value), href: sceneLink(s.name, { a: name }), style: { "--t": heat(value) },
           title: `${s.name}, ${holder.short_name}: ${known(value) ? percent(value) + " %" : "not measured"}${v.within_truth_error ? ", within truth's own error" : ""}`,
           onclick: () => scrollToScene(), text: known(value) ? percent(value, true) : v.nonfinite_pixels ? "NaN" : "–" }));
+        }
       }
     }
     matrix.append(h("span", { class: "rule" }));
@@ -416,7 +431,8 @@ function buildScene() {
   // Controls
   const names = [...(s.truth.stem ? [TRUTH] : []), ...(shadowOf(s) ? [SHADOWED] : []), ...variantsOf(s).map((v) => v.name)];
   const picker = (key) => h("select", { "aria-label": `Image ${key.toUpperCase()}`, onchange: (e) => set({ [key]: e.target.value }) },
-    names.map((n) => h("option", { value: n, text: label(s, n) })));
+    names.filter((n) => !variantNamed(s, n)).map((n) => h("option", { value: n, text: label(s, n) })),
+    bySource(variantsOf(s)).map(([group, list]) => h("optgroup", { label: group }, list.map((v) => h("option", { value: v.name, text: label(s, v.name) })))));
   ui.a = picker("a");
   ui.b = picker("b");
   ui.lobe = segments("Lobe", LOBES.map((l) => [l, l]), state.lobe, (l) => set({ lobe: l }));
@@ -481,8 +497,10 @@ function buildThumbs(s) {
   ui.thumbs = new Map();
   const grid = h("div", { class: "thumbs" });
   const entries = [...(s.truth.stem ? [{ name: TRUTH, stem: "truth" }] : []),
-    ...(shadowOf(s) ? [{ name: SHADOWED, stem: shadowOf(s).stem, summary: "ground truth with visibility: nothing is ranked against it" }] : []), ...variantsOf(s)];
+    ...(shadowOf(s) ? [{ name: SHADOWED, stem: shadowOf(s).stem, summary: "ground truth with visibility: nothing is ranked against it" }] : []), ...bySource(variantsOf(s)).flatMap(([, list]) => list)];
+  let group = null;
   for (const v of entries) {
+    if (v.citation !== undefined && sourceOf(v) !== group) grid.append(h("h4", { class: "source", text: group = sourceOf(v) }));
     const path = `images/${encodeURIComponent(s.folder)}/${encodeURIComponent(v.stem)}.png`;
     const picture = h("img", { class: "shot", src: path, width: s.width, height: s.height, style: { height: "auto" }, decoding: "async", alt: `${label(s, v.name)}: picture` });
     const map = newCanvas(Math.ceil(s.width / 2), Math.ceil(s.height / 2));
@@ -568,7 +586,7 @@ function buildTable(s) {
     }
     const value = (columns.find(([key]) => key === state.sort) || columns[1])[2];
     const size = (v) => { const x = value(v); return typeof x === "string" ? x : known(x) ? (state.sort === "bias" ? Math.abs(x) : x) : Infinity; };
-    const rows = [...shown].sort((p, q) => {
+    const rows = shown.filter(chosen).sort((p, q) => {
       const x = size(p), y = size(q), order = typeof x === "string" ? x.localeCompare(y) : x === y ? 0 : x < y ? -1 : 1;
       return state.down ? -order : order;
     });
@@ -671,7 +689,7 @@ function placeIn(s, name, axis) {
 // The marks of some scenes: of several, geometric means over those that every mark has; who shades fewer than half is left out.
 function paretoMarks(scenes, axis) {
   const hidden = new Set(state.off.split(",")), names = [];
-  for (const s of scenes) for (const v of variantsOf(s)) if (!names.includes(v.name) && !hidden.has(techniqueOf(v.name))) names.push(v.name);
+  for (const s of scenes) for (const v of variantsOf(s)) if (chosen(v) && !names.includes(v.name) && !hidden.has(techniqueOf(v.name))) names.push(v.name);
   const count = (name) => scenes.filter((s) => placeIn(s, name, axis)).length;
   const kept = names.filter((name) => 2 * count(name) >= scenes.length && count(name) > 0);
   const common = scenes.filter((s) => kept.every((name) => placeIn(s, name, axis)));
@@ -706,6 +724,20 @@ function paretoSentences(front, axis, where) {
     list.push(h("li", {}, "From ", name(p), " to ", name(m), `: ${more < 9.95 ? more.toFixed(2) : more.toFixed(0)} × the cost leaves ${percent(m.y / p.y)} % of the error.`));
   });
   return list;
+}
+
+// What the sources say, by source: how many of their claims hold, each list on a page of its own.
+function buildClaims() {
+  const pages = results.claims || [];
+  if (!pages.length) return null;
+  const tally = (count, mark, words) => count ? h("span", { class: "tally" }, h("b", { "aria-hidden": "true", text: mark }), ` ${count} ${words}`) : null;
+  return h("section", { id: "claims", "aria-labelledby": "claims-heading" },
+    h("div", { class: "head" }, h("h3", { id: "claims-heading", text: "What the sources claim" }),
+      h("p", { class: "note", text: "Each claim of a source's text in a sentence, our figure beside it, and whether it holds." })),
+    h("ul", { class: "claims card" }, pages.map((page) => h("li", {},
+      h("a", { href: `claims-${encodeURIComponent(page.source)}.html`, text: page.citation }), h("span", { class: "title", text: page.title }),
+      h("span", { class: "tallies" }, tally(page.holds, "✓", page.holds === 1 ? "holds" : "hold"), tally(page.partly, "~", page.partly === 1 ? "holds partly" : "hold partly"),
+        tally(page.fails, "✗", page.fails === 1 ? "does not hold" : "do not hold"), tally(page.unknown, "?", "not measured"))))));
 }
 
 function buildPareto(scenes, title, where) {
@@ -1086,9 +1118,9 @@ function set(changes) {
   Object.assign(state, changes);
   rememberState();
   draw();
-  if (before.sort !== state.sort || before.down !== state.down) ui.table();
-  if (before.lobe !== state.lobe) overview.refresh();
-  if (["lobe", "cost", "metric", "xlog", "ylog", "off"].some((key) => before[key] !== state[key])) drawPlots();
+  if (before.sort !== state.sort || before.down !== state.down || before.source !== state.source) ui.table();
+  if (before.lobe !== state.lobe || before.source !== state.source) overview.refresh();
+  if (["source", "lobe", "cost", "metric", "xlog", "ylog", "off"].some((key) => before[key] !== state[key])) drawPlots();
   if ((before.a !== state.a || before.b !== state.b) && ui.pairMatrix) ui.pairMatrix();
 }
 
@@ -1130,6 +1162,8 @@ const recent = [];
 const overview = buildOverview();
 const overallPlot = results.scenes.length > 1 ? buildPareto(results.scenes, "Accuracy against cost over the scenes", "over these scenes") : null;
 if (overallPlot) overview.append(overallPlot);
+const claims = buildClaims();
+if (claims) overview.append(claims);
 function show() {
   readHash();
   settle();
