@@ -12,7 +12,7 @@
 #include "scenes/bake.h"
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::aperture_test {
 namespace {
 
 // A floor at the foot of a wall, seen from above, and a sphere light overhead on the wall's open or shut side.
@@ -100,4 +100,4 @@ TEST_F(Aperture, CacheGivesTheSameBitsAndHealsWhatIsDamaged) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::aperture_test

@@ -7,7 +7,7 @@
 #include "tests/compare/synthetic_results.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::baseline_test {
 namespace {
 
 using testing::ElementsAre;
@@ -82,4 +82,4 @@ TEST_F(Baseline, AFileThatIsNoneAndAnotherSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::baseline_test

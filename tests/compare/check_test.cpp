@@ -16,7 +16,7 @@
 #include "scenes/scene.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::check_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -286,4 +286,4 @@ TEST_F(ImageCheck, TheCommandSaysSoByItsExitStatus) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::check_test

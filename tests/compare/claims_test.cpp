@@ -12,7 +12,7 @@
 #include "compare/page_parts.h"
 #include "scenes/error.h"
 
-namespace arealab {
+namespace arealab::claims_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ TEST(Claims, PagesAreKeptAndADamagedOneIsMadeAgain) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::claims_test

@@ -8,7 +8,7 @@
 
 #include "scenes/error.h"
 
-namespace arealab {
+namespace arealab::context_test {
 namespace {
 
 using testing::AnyOf;
@@ -140,4 +140,4 @@ TEST(Context, EnvironmentNamesTheLibraries) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::context_test

@@ -7,7 +7,7 @@
 #include "scenes/error.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::cost_test {
 namespace {
 
 using testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST(Cost, ASceneOfEffectsHasThemAndNoOthers) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::cost_test

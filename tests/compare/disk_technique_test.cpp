@@ -6,7 +6,7 @@
 
 #include "tests/compare/technique_laws.h"
 
-namespace arealab {
+namespace arealab::disk_technique_test {
 namespace {
 
 constexpr std::array kShapes{LightShape::kDisk, LightShape::kSphere};
@@ -120,4 +120,4 @@ TEST_F(DiskTechnique, DegenerateLightsStayFinite) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::disk_technique_test

@@ -14,7 +14,7 @@
 #include "tests/compare/stranger.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::export_test {
 namespace {
 
 using testing::HasSubstr;
@@ -194,4 +194,4 @@ TEST(Export, WritesTheSampleForTheBrowserTest) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::export_test

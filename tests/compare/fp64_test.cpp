@@ -16,7 +16,7 @@
 #include "glsl/expand.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::fp64_test {
 namespace {
 
 constexpr int kPoints = 100000;
@@ -149,4 +149,4 @@ TEST(Fp64SpecialValues, SurviveTheDriver) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::fp64_test

@@ -6,7 +6,7 @@
 
 #include "tests/compare/technique_laws.h"
 
-namespace arealab {
+namespace arealab::karis_technique_test {
 namespace {
 
 class KarisTechnique : public testing::Test {
@@ -120,4 +120,4 @@ TEST_F(KarisTechnique, StandsInItsBandsAgainstTruth) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::karis_technique_test

@@ -4,7 +4,7 @@
 
 #include "tests/compare/law_check.h"
 
-namespace arealab {
+namespace arealab::laws_test {
 namespace {
 
 std::vector<Technique> AllTechniques() { return LoadTechniques(ShaderLibrary()); }
@@ -56,4 +56,4 @@ TEST(TechniqueLawsThemselves, AFalseHeaderFails) {
 INSTANTIATE_TEST_SUITE_P(Headers, TechniqueLaws, testing::ValuesIn(AllTechniques()), [](const auto& technique) { return technique.param.name; });
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::laws_test

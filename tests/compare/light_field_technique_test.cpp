@@ -6,7 +6,7 @@
 
 #include "tests/compare/technique_laws.h"
 
-namespace arealab {
+namespace arealab::light_field_technique_test {
 namespace {
 
 class LightFieldTechnique : public testing::Test {
@@ -112,4 +112,4 @@ TEST_F(LightFieldTechnique, StandsInItsBandsAgainstTruth) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::light_field_technique_test

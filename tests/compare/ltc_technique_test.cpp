@@ -9,7 +9,7 @@
 
 #include "tests/compare/technique_points.h"
 
-namespace arealab {
+namespace arealab::ltc_technique_test {
 namespace {
 
 class LtcTechnique : public testing::Test {
@@ -329,4 +329,4 @@ TEST_F(LtcTechnique, DegenerateInputsStayFiniteForEveryOption) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::ltc_technique_test

@@ -6,7 +6,7 @@
 
 #include "tests/compare/technique_laws.h"
 
-namespace arealab {
+namespace arealab::mayaux_technique_test {
 namespace {
 
 class MayauxTechnique : public testing::Test {
@@ -127,4 +127,4 @@ TEST_F(MayauxTechnique, StandsInItsBandsAgainstTruth) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::mayaux_technique_test

@@ -11,7 +11,7 @@
 
 #include "compare/flip.h"
 
-namespace arealab {
+namespace arealab::metrics_test {
 namespace {
 
 using Pixels = std::vector<glm::vec3>;
@@ -324,4 +324,4 @@ TEST(HdrFlip, BlackAndNonFinitePictures) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::metrics_test

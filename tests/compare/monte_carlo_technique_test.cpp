@@ -6,7 +6,7 @@
 
 #include "tests/compare/technique_laws.h"
 
-namespace arealab {
+namespace arealab::monte_carlo_technique_test {
 namespace {
 
 class MonteCarloTechnique : public testing::Test {
@@ -151,4 +151,4 @@ TEST_F(MonteCarloTechnique, Laws) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::monte_carlo_technique_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace arealab {
+namespace arealab::oat_claims_test {
 namespace {
 
 // Mid-points of the smaller cap, even in height and turn, that lie in the other one.
@@ -60,4 +60,4 @@ TEST(OatClaims, AveragedCentroidIsTooBright) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::oat_claims_test

@@ -7,7 +7,7 @@
 
 #include "tests/compare/synthetic_results.h"
 
-namespace arealab {
+namespace arealab::pareto_test {
 namespace {
 
 using testing::ElementsAre;
@@ -76,4 +76,4 @@ TEST(Pareto, ThePictureNamesEveryMarkAndEscapesIt) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::pareto_test

@@ -4,7 +4,7 @@
 
 #include "tests/compare/technique_laws.h"
 
-namespace arealab {
+namespace arealab::polygon_technique_test {
 namespace {
 
 class PolygonTechnique : public testing::Test {
@@ -234,4 +234,4 @@ TEST_F(PolygonTechnique, HardPointsStayFinite) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::polygon_technique_test

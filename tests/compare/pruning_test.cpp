@@ -10,7 +10,7 @@
 #include "scenes/error.h"
 #include "tests/compare/random_scenes.h"
 
-namespace arealab {
+namespace arealab::pruning_test {
 namespace {
 
 // Of the largest radiance that the lights together give a pixel, lobe by lobe.
@@ -130,4 +130,4 @@ TEST_F(Pruning, AWronglyDroppedEffectIsSeen) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::pruning_test

@@ -5,7 +5,7 @@
 
 #include "tests/compare/technique_points.h"
 
-namespace arealab {
+namespace arealab::reference_technique_test {
 namespace {
 
 class ReferenceTechnique : public testing::Test {
@@ -92,4 +92,4 @@ TEST_F(ReferenceTechnique, ShrinkingLightTendsToThePoint) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::reference_technique_test

@@ -1,6 +1,7 @@
 #include "glsl/renderer.h"
 
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <glad/gl.h>
 #include <gmock/gmock.h>
 
@@ -17,7 +18,7 @@
 #include "scenes/shapes.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::renderer_test {
 namespace {
 
 using testing::HasSubstr;
@@ -644,7 +645,7 @@ TEST_F(Probing, LightBlockArrivesWhole) {
       pixels.position.begin());
   for (const auto& [expression, expected] : quantities) {
     for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
-      WriteProbe("", std::string(kShade) + "  return Radiance(" + expression + ", vec3(1.0));\n}\n");
+      WriteProbe("", fmt::format("{}  return Radiance({}, vec3(1.0));\n}}\n", kShade, expression));
       const RadianceImage image = Shade(renderer, precision);
       // The very float in either precision.
       for (int c = 0; c < 3; ++c)
@@ -824,4 +825,4 @@ TEST_F(Rendering, GpuMemoryIsGivenBack) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::renderer_test

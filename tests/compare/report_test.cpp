@@ -25,7 +25,7 @@
 #include "scenes/error.h"
 #include "tests/compare/synthetic_results.h"
 
-namespace arealab {
+namespace arealab::report_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -694,4 +694,4 @@ TEST(Report, WritesTheSampleForThePageTest) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::report_test

@@ -12,7 +12,7 @@
 #include "scenes/error.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::shader_log_test {
 namespace {
 
 using testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST_P(ShaderLog, NamesTheLineOfAPreprocessorError) {
 INSTANTIATE_TEST_SUITE_P(Precisions, ShaderLog, testing::Values(Precision::kFloat, Precision::kDouble));
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::shader_log_test

@@ -18,7 +18,7 @@
 #include "compare/truth_cache.h"
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::shadowed_truth_test {
 namespace {
 
 using glm::dvec3;
@@ -399,4 +399,4 @@ TEST(LightSampling, ScrambledPointsAreNets) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::shadowed_truth_test

@@ -15,7 +15,7 @@
 #include "scenes/bake.h"
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::sky_test {
 namespace {
 
 using glm::dvec3;
@@ -243,4 +243,4 @@ TEST_F(Sky, AtTheFootOfAWallHisFillByAreaIsRight) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::sky_test

@@ -5,7 +5,7 @@
 
 #include "compare/source_experiments.h"
 
-namespace arealab {
+namespace arealab::source_experiments_test {
 namespace {
 
 // "A statistical error less than 0.05 against best-point", "more than 0.15" for the shipped form [§1.3.3]: the first comes out; the second by
@@ -60,4 +60,4 @@ TEST(SourceExperiments, MayauxsArea) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::source_experiments_test

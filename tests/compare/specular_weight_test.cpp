@@ -5,7 +5,7 @@
 #include "compare/truth.h"
 #include "glsl/renderer.h"
 
-namespace arealab {
+namespace arealab::specular_weight_test {
 namespace {
 
 TEST(SpecularWeight, WeighsTheSpecularLobeAlone) {
@@ -36,4 +36,4 @@ TEST(SpecularWeight, WeighsTheSpecularLobeAlone) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::specular_weight_test

@@ -13,7 +13,7 @@
 #include "compare/stress_mutants.h"
 #include "scenes/error.h"
 
-namespace arealab {
+namespace arealab::stress_test {
 namespace {
 
 const StressFamily& Family(const std::string& name) {
@@ -172,4 +172,4 @@ TEST(StressMutants, AreThereExactlyOnce) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::stress_test

@@ -13,7 +13,7 @@
 #include "tests/compare/synthetic_results.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::sweep_test {
 namespace {
 
 using testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST(Sweep, PartsThatDoNotFitAreRefused) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::sweep_test

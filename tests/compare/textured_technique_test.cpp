@@ -13,7 +13,7 @@
 #include "scenes/light_texture.h"
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::textured_technique_test {
 namespace {
 
 std::shared_ptr<const Image> Checks(float bright, float dark) {
@@ -174,4 +174,4 @@ TEST(LightTextureForms, AreTheirKernelsMeans) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::textured_technique_test

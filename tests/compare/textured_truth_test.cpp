@@ -8,7 +8,7 @@
 
 #include "compare/textured_truth.h"
 
-namespace arealab {
+namespace arealab::textured_truth_test {
 namespace {
 
 using glm::dvec3;
@@ -181,4 +181,4 @@ TEST(TexturedTruth, OfAConstantIsTheUntextured) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::textured_truth_test

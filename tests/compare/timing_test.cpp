@@ -5,7 +5,7 @@
 #include "compare/harness.h"
 #include "scenes/error.h"
 
-namespace arealab {
+namespace arealab::timing_test {
 namespace {
 
 TEST(Timing, BootstrapIntervalHoldsTheMedianAndShrinksWithSpread) {
@@ -72,4 +72,4 @@ TEST(Timing, NetRatioIsRefusedWherePointIsLostInItsSpread) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::timing_test

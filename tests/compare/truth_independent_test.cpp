@@ -12,7 +12,7 @@
 #include "compare/truth.h"
 #include "tests/compare/hard_configurations.h"
 
-namespace arealab {
+namespace arealab::truth_independent_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -429,4 +429,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Independent, testing::ValuesIn(Settings()), [](
 });
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::truth_independent_test

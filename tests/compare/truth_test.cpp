@@ -21,7 +21,7 @@
 #include "compare/truth_levels.h"
 #include "tests/compare/hard_configurations.h"
 
-namespace arealab {
+namespace arealab::truth_test {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
@@ -437,4 +437,4 @@ TEST_F(TruthCache, AFolderThatCannotBeWrittenCostsOnlyTheStoring) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::truth_test

@@ -12,7 +12,7 @@
 #include "glsl/variant.h"
 #include "scenes/error.h"
 
-namespace arealab {
+namespace arealab::variants_compile_test {
 namespace {
 
 // Everything on but the shapes that the technique does not do.
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(Precision, Variants, testing::Values(Precision::kFloat,
                          });
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::variants_compile_test

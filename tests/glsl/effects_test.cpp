@@ -6,7 +6,7 @@
 #include "scenes/error.h"
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::effects_test {
 namespace {
 
 using testing::HasSubstr;
@@ -178,4 +178,4 @@ TEST(Effects, ForcedOnesHaveTheLastWord) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::effects_test

@@ -8,7 +8,7 @@
 #include "scenes/error.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::expand_test {
 namespace {
 
 using testing::HasSubstr;
@@ -266,4 +266,4 @@ INSTANTIATE_TEST_SUITE_P(
         Rewrite{"#endif\nfloat", "#endif\ndouble"}, Rewrite{"", ""}, Rewrite{"1.0", "1.0lf"}));
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::expand_test

@@ -7,7 +7,7 @@
 
 #include "glsl/fit.h"
 
-namespace arealab {
+namespace arealab::fit_brdfs_test {
 namespace {
 
 class FitOf : public testing::TestWithParam<std::pair<Brdf, FitKind>> {
@@ -74,4 +74,4 @@ INSTANTIATE_TEST_SUITE_P(Brdfs, FitOf, testing::ValuesIn(Fits()), [](const auto&
 });
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::fit_brdfs_test

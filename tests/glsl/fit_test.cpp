@@ -16,7 +16,7 @@
 #include "scenes/error.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::fit_test {
 namespace {
 
 constexpr FitKind kKinds[] = {FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished};
@@ -446,4 +446,4 @@ TEST(Fit, BadUseIsRefused) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::fit_test

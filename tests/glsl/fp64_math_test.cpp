@@ -12,7 +12,7 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wshadow"
 
-namespace arealab {
+namespace arealab::fp64_math_test {
 namespace {
 namespace shader {
 
@@ -185,4 +185,4 @@ TEST(Fp64Math, VectorsGoByComponent) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::fp64_math_test

@@ -12,7 +12,7 @@
 #include "glsl/technique.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::house_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -341,4 +341,4 @@ TEST(House, UnfinishedWorkIsFound) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::house_test

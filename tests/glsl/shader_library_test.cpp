@@ -9,7 +9,7 @@
 #include "scenes/error.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::shader_library_test {
 namespace {
 
 using testing::Contains;
@@ -80,4 +80,4 @@ TEST(ShaderLibrary, AMissingFolderIsRefused) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::shader_library_test

@@ -8,7 +8,7 @@
 #include "scenes/error.h"
 #include "tests/glsl/temporary_folder.h"
 
-namespace arealab {
+namespace arealab::technique_test {
 namespace {
 
 using testing::ElementsAre;
@@ -341,4 +341,4 @@ TEST(Technique, TwoKnobsOfOneNameAreRefused) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::technique_test

@@ -8,7 +8,7 @@
 #include "scenes/error.h"
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::variant_test {
 namespace {
 
 using testing::ElementsAre;
@@ -229,4 +229,4 @@ TEST(Variant, UnsupportedBrdfsAreNamedInASentence) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::variant_test

@@ -6,7 +6,7 @@
 
 #include "tests/scenes/scene_folder.h"
 
-namespace arealab {
+namespace arealab::bad_scene_test {
 namespace {
 
 struct BadScene {
@@ -509,4 +509,4 @@ TEST_F(BadSceneFile, DamagedTextNeverCrashes) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::bad_scene_test

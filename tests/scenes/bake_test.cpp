@@ -8,7 +8,7 @@
 
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::bake_test {
 namespace {
 
 Scene SceneOf(std::vector<Mesh> meshes, int rays) {
@@ -116,4 +116,4 @@ TEST(Bake, SameBitsOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::bake_test

@@ -5,7 +5,7 @@
 #include "scenes/light_texture.h"
 #include "tests/scenes/scene_folder.h"
 
-namespace arealab {
+namespace arealab::light_test {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
@@ -149,4 +149,4 @@ TEST_F(LightTest, LightsWithoutNamesAreNumbered) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::light_test

@@ -12,7 +12,7 @@
 #include "tests/scenes/mesh_checks.h"
 #include "tests/scenes/scene_folder.h"
 
-namespace arealab {
+namespace arealab::mesh_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -334,4 +334,4 @@ TEST_F(MeshTest, DamagedImageIsRefused) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::mesh_test

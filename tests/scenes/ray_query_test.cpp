@@ -8,7 +8,7 @@
 
 #include "scenes/shapes.h"
 
-namespace arealab {
+namespace arealab::ray_query_test {
 namespace {
 
 using glm::dvec3;
@@ -182,4 +182,4 @@ TEST(RayQuery, TheProofAgreesWithRays) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::ray_query_test

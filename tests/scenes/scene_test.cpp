@@ -10,7 +10,7 @@
 #include "tests/scenes/mesh_checks.h"
 #include "tests/scenes/scene_folder.h"
 
-namespace arealab {
+namespace arealab::scene_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -183,4 +183,4 @@ TEST_F(SceneTest, AnotherFolderOfScenesCanBeNamed) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::scene_test

@@ -5,7 +5,7 @@
 
 #include "tests/scenes/mesh_checks.h"
 
-namespace arealab {
+namespace arealab::shapes_test {
 namespace {
 
 const Placement kTurned{{1.0, -2.0, 3.0}, RotationFromDegrees({20.0, -50.0, 110.0})};
@@ -110,4 +110,4 @@ TEST(Shapes, HeightFieldFollowsItsFunction) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::shapes_test

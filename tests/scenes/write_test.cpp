@@ -11,7 +11,7 @@
 #include "scenes/error.h"
 #include "tests/scenes/scene_folder.h"
 
-namespace arealab {
+namespace arealab::write_test {
 namespace {
 
 using testing::HasSubstr;
@@ -266,4 +266,4 @@ TEST_F(SceneFolder, TexturesOfLightsAreKeptAddedAndTakenAway) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::write_test
