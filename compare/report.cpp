@@ -24,6 +24,7 @@
 #include "compare/page_data.h"
 #include "compare/pareto.h"
 #include "compare/results_json.h"
+#include "glsl/shader_library.h"
 #include "scenes/embedded.h"
 #include "scenes/error.h"
 
@@ -439,6 +440,7 @@ void ReportWriter::Finish(const Results& results) {
   Json page = ResultsObject(results);
   page["sources"] = Json::array();
   for (const ClaimSource& source : ClaimSources()) page["sources"].push_back(source.citation);
+  page["fit"] = Json::parse(ShaderLibrary().Find("tables/quality.json").value());
   for (const ClaimsPage& claims : results.claims) WriteText(root / fmt::format("claims-{}.html", claims.name), claims.html);
   fs::create_directories(root / "plots");
   for (std::size_t s = 0; s < state_->scenes.size(); ++s) {

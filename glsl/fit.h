@@ -169,6 +169,21 @@ FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options = {
 // The same as a Markdown table, in per cent, with the seed.
 std::string QualityTable(const FitQuality& quality);
 
+// The same over a finer grid, and what a lobe's picture shows: row-major [roughness][angle], none of them a node.
+struct FitMap {
+  std::string table;  // "ltc_ggx_polygon"
+  std::string brdf;   // a scene's choice
+  MeasureOptions options;
+  std::vector<double> roughness, degrees;
+  std::vector<double> polygon;  // relative RMSE over the rectangles
+  std::vector<double> lobe;     // ∫|ρ − magnitude · LTC| over ∫ρ, above the surface's horizon
+  std::vector<double> below;    // the LTC's share below it, which `horizon` tables never let reach the picture
+};
+FitMap MapFit(const LtcTables& tables, const MeasureOptions& options = {},
+              const std::function<void(double)>& progress = {});
+// One cell: polygon, lobe, below.
+std::array<double, 3> MeasureFitAt(const LtcTables& tables, double roughness, double degrees, const MeasureOptions& options);
+
 // The files' names, without the folder.
 std::string MatrixFile(Brdf brdf, FitKind kind, const LtcStorage& storage);
 std::string TermsFile(Brdf brdf, FitKind kind, LtcAxis axis);

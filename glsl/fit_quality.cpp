@@ -17,6 +17,8 @@ constexpr double kRoughness[] = {0.1, 0.25, 0.5, 0.75, 1.0};
 constexpr double kDegrees[] = {10.0, 30.0, 50.0, 70.0, 85.0};
 constexpr double kLowRoughness[] = {0.05, 0.08, 0.11, 0.15, 0.2};
 constexpr double kGrazingDegrees[] = {60.0, 70.0, 78.0, 84.0, 88.0};
+constexpr double kMapRoughness[] = {0.05, 0.1, 0.15, 0.2, 0.27, 0.35, 0.44, 0.53, 0.63, 0.75, 0.87, 1.0};
+constexpr double kMapDegrees[] = {1.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 75.0, 80.0, 84.0, 87.0};
 
 struct Point {
   double roughness, degrees;
@@ -50,7 +52,52 @@ void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int n
   point->bias = difference / total;
 }
 
+// The LTC's density at a unit direction, 1/sr [Heitz et al. 2016, eq. 1].
+double LobeAt(const glm::dvec4& m, double x, double y, double z) {
+  const double ux = m.x * x + m.z * z, uz = m.y * x + m.w * z, length2 = ux * ux + y * y + uz * uz;
+  return std::max(uz, 0.0) * (m.x * m.w - m.y * m.z) / (glm::pi<double>() * length2 * length2);
+}
+
 }  // namespace
+
+std::array<double, 3> MeasureFitAt(const LtcTables& tables, double roughness, double degrees, const MeasureOptions& options) {
+  Point point{roughness, degrees};
+  Measure(tables, fit::RandomRectangles(options.rectangles, options.seed), options.nodes, &point);
+  const fit::View view = fit::MakeView(tables.brdf, roughness, std::cos(glm::radians(degrees)));
+  const LtcLookup look = Look(tables, roughness, view.cosine);
+  const fit::Nodes nodes = fit::UpperNodes(view, options.nodes, options.nodes);
+  double difference = 0.0, total = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double cosine_lobe = nodes.z[i] / glm::pi<double>();
+    const double fitted = look.terms.x * (LobeAt(look.m, nodes.x[i], nodes.y[i], nodes.z[i]) + look.terms.z * cosine_lobe);
+    difference += nodes.weight[i] * std::abs(nodes.density[i] - fitted);
+    total += nodes.weight[i] * nodes.density[i];
+  }
+  return {point.relative_rmse, difference / total, 0.5 * (1.0 - look.m.x / std::hypot(look.m.x, look.m.y))};
+}
+
+FitMap MapFit(const LtcTables& tables, const MeasureOptions& options, const std::function<void(double)>& progress) {
+  FitMap map;
+  map.table = TableName(tables.brdf, tables.kind);
+  map.brdf = Name(tables.brdf);
+  map.options = options;
+  map.roughness.assign(std::begin(kMapRoughness), std::end(kMapRoughness));
+  map.degrees.assign(std::begin(kMapDegrees), std::end(kMapDegrees));
+  const std::size_t columns = map.degrees.size(), cells = map.roughness.size() * columns;
+  for (auto* figure : {&map.polygon, &map.lobe, &map.below}) figure->resize(cells);
+  std::mutex mutex;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t i) {
+    const auto [polygon, lobe, below] = MeasureFitAt(tables, map.roughness[i / columns], map.degrees[i % columns], options);
+    map.polygon[i] = polygon;
+    map.lobe[i] = lobe;
+    map.below[i] = below;
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(cells));
+  });
+  return map;
+}
 
 double LtcQuadIntegral(const glm::dvec4& m, const std::array<glm::dvec3, 4>& corners) {
   return fit::QuadIntegral(fit::Terms(m.x, m.y, m.z, m.w), fit::MakeQuad(corners));

@@ -254,7 +254,7 @@ function paintMap(canvas, kind, a, b, lobe, floor, range, log) {
 
 const state = { scene: "", a: "", b: TRUTH, lobe: "total", map: "signed", log: true, range: 0, ev: 0, wipe: 0.5,
                 zoom: 0, x: 0, y: 0, px: -1, py: -1, thumbs: "pictures", sort: "total", down: false,
-                cost: "", metric: "rel_rmse", xlog: true, ylog: true, off: "", source: "" };
+                cost: "", metric: "rel_rmse", xlog: true, ylog: true, off: "", source: "", fit: "polygon", fitbrdf: "ggx" };
 const DEFAULTS = { ...state };
 let scene = null;
 let images = new Map();  // variant name, TRUTH or "emission" → decoded image of the current scene
@@ -270,6 +270,8 @@ function readHash() {
   }
   if (!LOBES.includes(state.lobe)) state.lobe = "total";
   if (!SOURCES.includes(state.source)) state.source = "";
+  if (!FIT_METRICS.some(([m]) => m === state.fit)) state.fit = "polygon";
+  if (!(results.fit || []).some((m) => m.brdf === state.fitbrdf)) state.fitbrdf = "ggx";
   if (!["signed", "magnitude"].includes(state.map)) state.map = "signed";
   if (!["pictures", "signed", "magnitude"].includes(state.thumbs)) state.thumbs = "pictures";
   if (!ERRORS.some(([key]) => key === state.metric)) state.metric = "rel_rmse";
@@ -1120,6 +1122,7 @@ function set(changes) {
   draw();
   if (before.sort !== state.sort || before.down !== state.down || before.source !== state.source) ui.table();
   if (before.lobe !== state.lobe || before.source !== state.source) overview.refresh();
+  if (fit && (before.fit !== state.fit || before.fitbrdf !== state.fitbrdf)) fit.refresh();
   if (["source", "lobe", "cost", "metric", "xlog", "ylog", "off"].some((key) => before[key] !== state[key])) drawPlots();
   if ((before.a !== state.a || before.b !== state.b) && ui.pairMatrix) ui.pairMatrix();
 }
@@ -1216,6 +1219,41 @@ const TERMS = [
   ["Files", "data/ holds what this page shows, as half floats that are rounded to keep the folder small: truth in steps of 0.8 %; differences to it as finely as halves hold them, but below a quarter of the truth's mean luminance (more in finely textured scenes) to the step that halves have there, and a variant's values to an eighth of its own relative RMSE, in steps of at most 0.8 % (1.6 or 3 % where the folder would else pass 56 MB); shadowed truth in steps of 1.6 %, less than its own error. images/SCENE/VARIANT.exr is for other viewers: the layers diffuse and specular (one Y channel where a layer is grey), compressed by DWA, which moves values by 0.1 to 0.5 % in the mean, single dark ones beside sharp edges by up to a quarter; arealab render writes full floats. .png is a small picture at the scene's exposure. Every metric was computed from the full floats."],
 ];
 
+// How far the built-in tables' lobes are from the BRDFs', over roughness and view angle.
+const FIT_METRICS = [["polygon", "polygons"], ["lobe", "lobe"], ["below", "below horizon"]];
+const FIT_KINDS = [["polygon", "ours: fitted on polygons (fit=polygon)"], ["l3", "the published kind: |difference|³ of the density (fit=l3)"], ["cosine", "ours, beside a share of the cosine lobe (lobes=cosine)"], ["horizon", "ours, for a second clip at the surface's horizon (horizon=true)"]];
+const FIT_NOTES = {
+  polygon: (map) => `Relative RMSE of a polygon light's specular integral, ${map.rectangles} rectangles (seed ${map.seed}): centres at distance 1, uniform over the upper hemisphere, turned at random, half sides log-uniform from 0.1 to 2, clipped at the horizon.`,
+  lobe: () => "Relative L1 distance of the lobe, above the surface's horizon: the integral of |BRDF × cosine − fitted lobe| over that of BRDF × cosine, Fresnel 1, every direction weighted alike.",
+  below: () => "The share of the fitted lobe that lies below the surface's horizon, where the BRDF has none: light from below that shows as impossible reflections (with horizon=true it is clipped away).",
+};
+function buildFit() {
+  const maps = results.fit || [];
+  if (!maps.length) return null;
+  const brdfs = [...new Set(maps.map((m) => m.brdf))];
+  const brdf = h("select", { "aria-label": "BRDF", onchange: (e) => set({ fitbrdf: e.target.value }) }, brdfs.map((b) => h("option", { value: b, text: b.replaceAll("_", " ") })));
+  const metric = segments("Measure of the fit", FIT_METRICS, state.fit, (m) => set({ fit: m }));
+  const note = h("p", { class: "note" }), grids = h("div", { class: "fits" });
+  const section = h("section", { id: "fit", "aria-labelledby": "fit-heading" },
+    h("div", { class: "head" }, h("h2", { id: "fit-heading", text: "How well the lobes are fitted" }), metric, h("label", { class: "field" }, "BRDF ", brdf), note), grids);
+  section.refresh = () => {
+    press(metric, state.fit);
+    brdf.value = state.fitbrdf;
+    const shown = FIT_KINDS.map(([kind, title]) => [maps.find((m) => m.brdf === state.fitbrdf && m.table.endsWith("_" + kind)), title]).filter(([m]) => m);
+    note.textContent = `${FIT_NOTES[state.fit](shown[0][0])} Look-up as in the shader, between the nodes of the table. In percent; colours by decades from 0.01 to 100 %.`;
+    grids.replaceChildren(...shown.map(([map, title]) => {
+      const grid = h("div", { class: "fit-grid", role: "img", "aria-label": `${title}: roughness by view angle`, style: { "--columns": map.degrees.length } });
+      grid.append(h("span"), ...map.degrees.map((d) => h("span", { class: "tick", text: `${d}°` })));
+      map.roughness.forEach((r, row) => grid.append(h("span", { class: "tick row", text: String(r) }), ...map.degrees.map((d, column) => {
+        const v = map[state.fit][row * map.degrees.length + column];
+        return h("span", { class: "cell" + hot(v), style: { "--t": heat(v) }, title: `roughness ${r}, view ${d}°: ${percent(v)} %`, text: percent(v, true) });
+      })));
+      return h("figure", { class: "card" }, h("figcaption", { text: title }), grid, h("p", { class: "axes", text: "down: roughness (alpha = roughness²); across: angle of the view from the normal" }));
+    }));
+  };
+  return section;
+}
+
 function buildGlossary() {
   const keys = [["s", "swap A and B"], ["1 2 3", "total, diffuse, specular"], ["m", "signed or magnitude"], ["l", "linear or log"], ["[ ]", "previous, next variant"], [", .", "previous, next scene"], ["+ − 0", "zoom in, out, fit"], ["e E", "exposure up, down"]];
   return h("section", { id: "glossary" }, h("div", { class: "head" }, h("h2", { text: "How to read this page" })),
@@ -1233,7 +1271,9 @@ function buildFooter() {
 
 const resizes = new ResizeObserver(() => { if (scene && shown) { overview.refresh(); if (ui.pairMatrix) ui.pairMatrix(); drawPlots(); draw(); } });
 buildMasthead();
-$("#main").append(overview, buildGlossary());
+const fit = buildFit();
+$("#main").append(...[overview, fit, buildGlossary()].filter(Boolean));
+if (fit) fit.refresh();
 buildFooter();
 show();
 addEventListener("hashchange", show);

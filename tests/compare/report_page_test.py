@@ -442,6 +442,19 @@ class Page(unittest.TestCase):
         self.assertEqual(len(curve[0]), 6)
         self.assertEqual(curve[2:], [["bad"], 4])
 
+    def test_fit_panel_shows_the_stored_figures(self):
+        maps = json.loads((Path(__file__).parents[2] / "glsl/tables/quality.json").read_text())
+        self.open()
+        for brdf, measure, place in (("ggx", "polygon", 0), ("ward", "lobe", 77), ("phong", "below", 143)):
+            self.set(fitbrdf=brdf, fit=measure)
+            shown = [m for m in maps if m["brdf"] == brdf]
+            cells = self.js("return [...document.querySelectorAll('#fit figure')].map((f) => [...f.querySelectorAll('.cell')].map((c) => c.title))")
+            self.assertEqual(len(cells), len(shown))
+            self.assertTrue(all(len(grid) == 144 for grid in cells))
+            ours = next(m for m in shown if m["table"].endswith("_polygon"))  # the first of the panel
+            figure = float(cells[0][place].split(": ")[1].removesuffix(" %").replace("\u2212", "-"))
+            self.assertAlmostEqual(figure, 100 * ours[measure][place], delta=0.006 * 100 * ours[measure][place] + 1e-3)
+
     def test_maps_in_the_grid(self):
         self.open("#thumbs=signed")
         drawn = self.js("""return [...document.querySelectorAll('.thumb canvas')].map((c) => {

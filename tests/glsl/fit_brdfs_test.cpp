@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "glsl/fit.h"
+#include "glsl/fit_lobe.h"
 
 namespace arealab::fit_brdfs_test {
 namespace {
@@ -44,6 +47,67 @@ TEST_P(FitOf, QualityIsInItsBand) {
   const bool published = kind == FitKind::kPublished;
   EXPECT_GT(quality.all, published ? 0.045 : brdf == Brdf::kGgxSeparable ? 0.013 : 0.025);
   EXPECT_LT(quality.all, published ? 0.11 : brdf == Brdf::kGgxSeparable ? 0.025 : 0.055);
+}
+
+// What the report shows of the fit is what the stored tables give: three cells of each, two of them where it is worst.
+TEST(FitMaps, StoredFiguresAreTheTables) {
+  std::ifstream file(AREALAB_SOURCE_DIR "/glsl/tables/quality.json");
+  const nlohmann::json maps = nlohmann::json::parse(file);
+  std::size_t map = 0;
+  for (const Brdf brdf : kBrdfs) {
+    for (const FitKind kind : KindsOf(brdf)) {
+      ASSERT_LT(map, maps.size());
+      const nlohmann::json& stored = maps[map++];
+      EXPECT_EQ(stored["table"], TableName(brdf, kind));
+      EXPECT_EQ(stored["brdf"], Name(brdf));
+      MeasureOptions options;
+      EXPECT_EQ(stored["rectangles"], options.rectangles);
+      EXPECT_EQ(stored["seed"], options.seed);
+      const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", brdf, kind);
+      const std::size_t columns = stored["degrees"].size();
+      for (const auto& [row, column] : {std::pair<std::size_t, std::size_t>{1, 11}, {6, 9}, {10, 2}}) {
+        const auto found = MeasureFitAt(tables, stored["roughness"][row], stored["degrees"][column], options);
+        const char* const names[] = {"polygon", "lobe", "below"};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double expected = stored[names[k]][row * columns + column];
+          EXPECT_NEAR(found[k], expected, 1e-3 * expected + 1e-9) << TableName(brdf, kind) << " " << names[k] << " " << row << " " << column;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(map, maps.size());
+}
+
+// The relative L1 distance against a sum over a fine grid of directions, by the tables' own look-up.
+TEST(FitMaps, LobeDistanceByAnotherRule) {
+  const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", Brdf::kGgx, FitKind::kPublished);
+  constexpr double kRoughness = 0.6, kDegrees = 65.0, kPi = 3.14159265358979323846;
+  const fit::View view = fit::MakeView(Brdf::kGgx, kRoughness, std::cos(kDegrees * kPi / 180.0));
+  const LtcLookup look = Look(tables, kRoughness, view.cosine);
+  const glm::dmat3 inverse = glm::transpose(glm::dmat3(look.m.x, 0.0, look.m.z, 0.0, 1.0, 0.0, look.m.y, 0.0, look.m.w));
+  double difference = 0.0, total = 0.0, share_below = 0.0;
+  constexpr int kSteps = 1000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double z = -1.0 + 2.0 * (i + 0.5) / kSteps, s = std::sqrt(1.0 - z * z);
+    for (int j = 0; j < kSteps; ++j) {
+      const double phi = 2.0 * kPi * (j + 0.5) / kSteps, solid_angle = 4.0 * kPi / (kSteps * kSteps);
+      const glm::dvec3 direction(s * std::cos(phi), s * std::sin(phi), z), u = inverse * direction;
+      const double length = glm::length(u), lobe = std::max(u.z / length, 0.0) / kPi * glm::determinant(inverse) / (length * length * length);
+      if (z < 0.0) {
+        share_below += lobe * solid_angle;
+        continue;
+      }
+      const double density = fit::LobeDensity(view, direction);
+      difference += std::abs(density - look.terms.x * lobe) * solid_angle;
+      total += density * solid_angle;
+    }
+  }
+  MeasureOptions options;
+  options.rectangles = 1;
+  const auto found = MeasureFitAt(tables, kRoughness, kDegrees, options);
+  EXPECT_GT(found[1], 0.05);
+  EXPECT_NEAR(found[1], difference / total, 1e-3);
+  EXPECT_NEAR(found[2], share_below, 1e-4);
 }
 
 // Straight on: all of Phong's lobe, and none of any is lost in the table's corner.
