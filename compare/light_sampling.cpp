@@ -34,8 +34,14 @@ std::uint64_t Mix(std::uint64_t a, std::uint64_t b) {
 }
 
 glm::dvec2 ScrambledSobol(std::uint32_t i, std::uint64_t seed) {
+  static const auto kSecond = [] {  // as far as a pixel of the truth asks: its loop over bits would cost as much as the scrambling
+    std::array<std::uint32_t, 512> values{};
+    for (std::uint32_t k = 0; k < values.size(); ++k) values[k] = dual::SobolSecond(k);
+    return values;
+  }();
+  const std::uint32_t second = i < kSecond.size() ? kSecond[i] : dual::SobolSecond(i);
   return {Unit(dual::OwenScramble(dual::ReverseBits(i), static_cast<std::uint32_t>(seed))),
-          Unit(dual::OwenScramble(dual::SobolSecond(i), static_cast<std::uint32_t>(seed >> 32)))};
+          Unit(dual::OwenScramble(second, static_cast<std::uint32_t>(seed >> 32)))};
 }
 
 std::optional<LightDirections> LightDirections::From(const glm::dvec3& position, const glm::dvec3& normal,
