@@ -22,7 +22,7 @@ constexpr double kSkyRounding = 2e-8;
 
 // A table's nodes, even in √(n·v) from where a mirror's lobe too is smooth on their scale; below, directly.
 constexpr double kFirstRoot = 0.1;
-constexpr std::size_t kIntervals = 256, kNodes = kIntervals + 1;
+constexpr std::size_t kIntervals = 256, kTableNodes = kIntervals + 1;
 constexpr std::size_t kStencil = 6;
 
 // Lagrange's weights at t of `count` nodes 0, 1, …, from the first on.
@@ -66,10 +66,10 @@ SkyIntegrals::SkyIntegrals(const Scene& scene, const SurfacePixels& pixels) {
     if (const std::optional<ShadedPixel> pixel = ShadedPixelAt(scene, pixels, i)) ++pixels_of[pixel->point.alpha];
   }
   for (const auto& [alpha, count] : pixels_of) {
-    if (count <= kNodes) continue;
+    if (count <= kTableNodes) continue;
     std::vector<LightIntegrals>& table = tables_[alpha];
-    table.resize(kNodes);
-    tbb::parallel_for(std::size_t{0}, kNodes, [&, alpha = alpha](std::size_t k) {
+    table.resize(kTableNodes);
+    tbb::parallel_for(std::size_t{0}, kTableNodes, [&, alpha = alpha](std::size_t k) {
       const double root = kFirstRoot + (1.0 - kFirstRoot) * static_cast<double>(k) / static_cast<double>(kIntervals);
       const double cosine = std::min(root * root, 1.0);
       table[k] = IntegrateSky({glm::dvec3(0.0), {0.0, 0.0, 1.0}, {std::sqrt(1.0 - cosine * cosine), 0.0, cosine}, alpha, scene.brdf});
@@ -83,7 +83,7 @@ LightIntegrals SkyIntegrals::At(const ShadingPoint& point) const {
   if (table == tables_.end() || root < kFirstRoot) return IntegrateSky(point);
   const double place = (root - kFirstRoot) / (1.0 - kFirstRoot) * static_cast<double>(kIntervals);
   const auto cell = static_cast<std::size_t>(place);
-  const std::size_t first = std::min(std::max(cell, kStencil / 2 - 1) - (kStencil / 2 - 1), kNodes - kStencil);
+  const std::size_t first = std::min(std::max(cell, kStencil / 2 - 1) - (kStencil / 2 - 1), kTableNodes - kStencil);
   const double t = place - static_cast<double>(first);
   const std::array<double, kStencil> fifth = LagrangeWeights(t, 0, kStencil), third = LagrangeWeights(t, 1, kStencil - 2);
   LightIntegrals sky;
