@@ -13,7 +13,7 @@
 namespace arealab {
 namespace {
 
-constexpr std::uint64_t kApertureVersion = 2;  // changes whenever the bake's results or the file's layout change
+constexpr std::uint64_t kApertureVersion = 3;  // changes whenever the bake's results or the file's layout change
 
 std::uint64_t Checksum(const Scene& scene) {
   ContentHash hash;

@@ -78,15 +78,15 @@ void Time(const Context& context, Renderer& renderer, const std::vector<Variant>
 
 // Fills `isa`. What another compiler than the GL's refuses costs its own variant the figures, and leaves a reason.
 void CountCycles(const CostMeter& meter, const ShaderLibrary& library, const std::vector<Variant>& variants, const Scene& scene,
-                 std::vector<VariantResult>& results, std::string& reason, const std::function<void(double)>& progress) {
+                 std::vector<VariantResult>& results, std::string& reason) {
   try {
-    const auto costs = meter.Measure(library, variants, scene, progress);
+    const auto costs = meter.Measure(library, variants, scene);
     for (std::size_t v = 0; v < costs.size(); ++v) results[v].isa = costs[v];
   } catch (const InputError& error) {
     reason = error.what();
     for (std::size_t v = 0; variants.size() > 1 && v < variants.size(); ++v) {
       std::vector<VariantResult> one = {results[v]};
-      CountCycles(meter, library, {variants[v]}, scene, one, reason, {});
+      CountCycles(meter, library, {variants[v]}, scene, one, reason);
       results[v].isa = one[0].isa;
     }
   }
@@ -240,6 +240,13 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     result.lit_pixels = CountLit(*result.truth);
     result.emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(scene, pixels));
 
+    // Other programs compile for other GPUs while this one draws.
+    std::vector<VariantResult> counted(options.variants.size());
+    std::string no_isa;
+    tbb::task_group counting;
+    if (options.cost) {
+      counting.run([&] { CountCycles(*options.cost, library, options.variants, scene, counted, no_isa); });
+    }
     for (std::size_t v = 0; v < options.variants.size(); ++v) {
       const Variant& variant = options.variants[v];
       report(variant.ShortName(), 0.5 + 0.2 * static_cast<double>(v) / static_cast<double>(options.variants.size()));
@@ -248,15 +255,15 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
       if (row.supported && options.split) row.split = SplitError(renderer, variant, *row.image, truth.radiance);
       result.variants.push_back(std::move(row));
     }
+    if (options.cost) report("cycles", 0.7);
+    counting.wait();
+    for (std::size_t v = 0; v < counted.size(); ++v) result.variants[v].isa = std::move(counted[v].isa);
+    if (!no_isa.empty()) results.no_isa = no_isa;
     if (options.timed_against) {
       measuring.wait();  // the clock is this process's, on every core
       TimingOptions timing = options.timing;
-      timing.progress = [&](double fraction) { report("times", 0.7 + 0.15 * fraction); };
+      timing.progress = [&](double fraction) { report("times", 0.7 + 0.2 * fraction); };
       Time(context, renderer, options.variants, *options.timed_against, result.lit_pixels, result.variants, timing);
-    }
-    if (options.cost) {
-      CountCycles(*options.cost, library, options.variants, scene, result.variants, results.no_isa,
-                  [&](double fraction) { report("cycles", 0.85 + 0.05 * fraction); });
     }
     report("errors", 0.9);
     measuring.wait();  // the scene before: at most one is measured while another is shaded

@@ -25,7 +25,7 @@ namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
 constexpr std::uint64_t kTruthVersion = 5;
-constexpr std::uint64_t kShadowVersion = 3;  // of the visibility on top of it
+constexpr std::uint64_t kShadowVersion = 4;  // of the visibility on top of it
 constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
 
 struct Header {

@@ -136,28 +136,33 @@ bool RayQuery::Occluded(const glm::dvec3& origin, const glm::dvec3& direction, d
 
 void RayQuery::Occluded(const glm::dvec3& origin, std::span<const ShadowRay> rays,
                         std::span<std::uint8_t> occluded) const {
-  // A stream, not packets: neighbours in a low-discrepancy sequence point anywhere. Two to three times as fast on the scenes' skies.
-  constexpr std::size_t kStream = 256;
+  // Not as coherent packets nor as a stream: both lose hits where a direction has a component that is 0 (Embree 3.13), and
+  // the coherent ones take twice the time.
+  constexpr std::size_t kLanes = 8;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  std::array<RTCRay, kStream> stream;
-  for (std::size_t begin = 0; begin < rays.size(); begin += kStream) {
-    const std::size_t count = std::min(kStream, rays.size() - begin);
-    for (std::size_t i = 0; i < count; ++i) {
-      const ShadowRay& from = rays[begin + i];
-      RTCRay& ray = stream[i];
-      ray = {};
-      ray.org_x = static_cast<float>(origin.x);
-      ray.org_y = static_cast<float>(origin.y);
-      ray.org_z = static_cast<float>(origin.z);
-      ray.dir_x = from.direction.x;
-      ray.dir_y = from.direction.y;
-      ray.dir_z = from.direction.z;
-      ray.tfar = from.far;
-      ray.mask = ~0u;
+  alignas(32) std::array<int, kLanes> valid;
+  RTCRay8 packet{};
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    packet.org_x[i] = static_cast<float>(origin.x);
+    packet.org_y[i] = static_cast<float>(origin.y);
+    packet.org_z[i] = static_cast<float>(origin.z);
+    packet.mask[i] = ~0u;
+  }
+  for (std::size_t begin = 0; begin < rays.size(); begin += kLanes) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const bool real = begin + i < rays.size();
+      const ShadowRay& ray = rays[real ? begin + i : begin];
+      valid[i] = real ? -1 : 0;
+      packet.dir_x[i] = ray.direction.x;
+      packet.dir_y[i] = ray.direction.y;
+      packet.dir_z[i] = ray.direction.z;
+      packet.tfar[i] = ray.far;
     }
-    rtcOccluded1M(state_->scene, &context, stream.data(), static_cast<unsigned>(count), sizeof(RTCRay));
-    for (std::size_t i = 0; i < count; ++i) occluded[begin + i] = stream[i].tfar < 0.0f ? 1 : 0;
+    rtcOccluded8(valid.data(), state_->scene, &context, &packet);
+    for (std::size_t i = 0; i < kLanes && begin + i < rays.size(); ++i) {
+      occluded[begin + i] = packet.tfar[i] < 0.0f ? 1 : 0;
+    }
   }
 }
 

@@ -51,9 +51,9 @@ const float kShortPanel = 0.3;
 
 // The arc's point nearest to `to`: (t, the foot on the tangent there as an offset in t, speed²), and its slope.
 vec3 NearestOnArc(Arc arc, LobeView view, vec2 to, out vec2 nearest) {
-  const int kChords = 4;
-  const int kCuts = 4;
-  const int kSteps = 3;
+  const int kChords = 3;
+  const int kCuts = 1;
+  const int kSteps = 1;
   vec2 slope;
   vec2 derivative;
   ArcSlope(arc, view, arc.t0, slope, derivative);
