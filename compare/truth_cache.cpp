@@ -24,7 +24,7 @@ namespace arealab {
 namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
-constexpr std::uint64_t kTruthVersion = 5;
+constexpr std::uint64_t kTruthVersion = 6;
 constexpr std::uint64_t kShadowVersion = 4;  // of the visibility on top of it
 constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
 

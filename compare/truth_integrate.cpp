@@ -3,7 +3,9 @@
 // and traps of mathematics, see compare/CMakeLists.txt: else square roots and max stay scalar).
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <ranges>
 #include <span>
@@ -14,8 +16,35 @@
 #include "compare/truth_levels.h"
 // clang-format off: the order matters
 #include "glsl/dual_begin.h"
+
+// The library's is a call, which no loop becomes vector code around. Within 3e-16 for x in [−708, 709], its value at the end
+// beyond: x = n ln 2 + r, |r| ≤ 0.347, Taylor's series of r to r¹³/13! (the next term is 4e-18), 2ⁿ in the exponent's bits.
+[[gnu::always_inline]] inline double VectorExp(double x) {
+  constexpr double kShift = 0x1.8p52;  // adding it rounds to the nearest integer, which its low bits then hold
+  x = x < -708.0 ? -708.0 : x > 709.0 ? 709.0 : x;
+  const double shifted = x * 1.4426950408889634 + kShift, n = shifted - kShift;
+  const double r = (x - n * 0x1.62e42fefa3800p-1) - n * 0x1.ef35793c76730p-45;  // ln 2, its first part short enough for n
+  double sum = 1.0 / 6227020800.0;
+  sum = sum * r + 1.0 / 479001600.0;
+  sum = sum * r + 1.0 / 39916800.0;
+  sum = sum * r + 1.0 / 3628800.0;
+  sum = sum * r + 1.0 / 362880.0;
+  sum = sum * r + 1.0 / 40320.0;
+  sum = sum * r + 1.0 / 5040.0;
+  sum = sum * r + 1.0 / 720.0;
+  sum = sum * r + 1.0 / 120.0;
+  sum = sum * r + 1.0 / 24.0;
+  sum = sum * r + 1.0 / 6.0;
+  sum = sum * r + 0.5;
+  sum = sum * r + 1.0;
+  sum = sum * r + 1.0;
+  return sum * std::bit_cast<double>((std::bit_cast<std::uint64_t>(shifted) + 1023u) << 52);
+}
+
+#define exp VectorExp
 #include "glsl/polar_rule.glsl"
 #include "glsl/brdf_choices.h"
+#undef exp
 #include "glsl/dual_end.h"
 // clang-format on
 
