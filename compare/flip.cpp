@@ -239,6 +239,31 @@ Planar MakePlanar(std::span<const glm::vec3> image, int width) {
   return planar;
 }
 
+// Blocks of kBand rows by kBlock columns within reach of a filter of any difference: elsewhere the map is 0. Row by row.
+constexpr int kBand = 16;
+static_assert(kBand >= kPad && kBlock >= kPad);
+std::vector<bool> DifferingBlocks(std::span<const glm::vec3> a, std::span<const glm::vec3> b, int width, int height) {
+  const int columns = (width + kBlock - 1) / kBlock, rows = (height + kBand - 1) / kBand;
+  std::vector<bool> near(static_cast<std::size_t>(columns * rows), false);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const int end_x = std::min((column + 1) * kBlock, width), end_y = std::min((row + 1) * kBand, height);
+      bool same = true;
+      for (int y = row * kBand; y < end_y && same; ++y) {
+        const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(y) * width;
+        same = std::equal(a.begin() + begin + column * kBlock, a.begin() + begin + end_x, b.begin() + begin + column * kBlock);
+      }
+      if (same) continue;
+      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns - 1); ++x) {
+          near[static_cast<std::size_t>(y * columns + x)] = true;
+        }
+      }
+    }
+  }
+  return near;
+}
+
 void Resize(FlipReference::Percept& percept, std::size_t size) {
   for (auto* plane : {&percept.lightness, &percept.a, &percept.b, &percept.edge, &percept.point})
     plane->resize(size);
@@ -305,7 +330,7 @@ std::vector<float> ChooseExposures(const Planar& image) {
 
 }  // namespace
 
-FlipReference::FlipReference(std::span<const glm::vec3> reference, int width) : width_(width) {
+FlipReference::FlipReference(std::span<const glm::vec3> reference, int width) : width_(width), reference_(reference.begin(), reference.end()) {
   if (width <= 0 || reference.empty() || reference.size() % static_cast<std::size_t>(width) != 0) {
     throw std::invalid_argument("an image's size is no multiple of its width; expected whole rows");
   }
@@ -342,15 +367,18 @@ std::vector<float> FlipReference::MapOf(std::span<const glm::vec3> test) const {
   static const Kernels kernels = ChooseKernels();
   static const float largest_color = LargestColorDistance();
   std::vector<float> padded(image.stride * static_cast<std::size_t>(height_), 0.0f);
+  const std::vector<bool> differing = DifferingBlocks(test, reference_, width_, height_);
   Planes7 planes;
   for (std::size_t e = 0; e < exposures_.size(); ++e) {
     FilterRows(image, exposures_[e], planes);
-    tbb::parallel_for(tbb::blocked_range<int>(0, height_, 16), [&](const tbb::blocked_range<int>& rows) {
+    tbb::parallel_for(0, (height_ + kBand - 1) / kBand, [&](int band) {
       Percept percept;
       Resize(percept, kBlock);
+      const int columns = (width_ + kBlock - 1) / kBlock;
       for (int begin = 0; begin < width_; begin += kBlock) {
+        if (!differing[static_cast<std::size_t>(band * columns + begin / kBlock)]) continue;
         const int end = std::min(begin + kBlock, width_);
-        for (int y = rows.begin(); y < rows.end(); ++y) {
+        for (int y = band * kBand; y < std::min((band + 1) * kBand, height_); ++y) {
           const std::size_t at = static_cast<std::size_t>(y) * image.stride + static_cast<std::size_t>(begin);
           kernels.perceive_row(planes, begin, end, image.stride, y, TheFilters(), percept, 0);
           kernels.compare_row(percepts_[e], at, percept, 0, end - begin, largest_color, padded.data() + at);

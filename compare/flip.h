@@ -41,6 +41,7 @@ class FlipReference {
 
  private:
   int width_ = 0, height_ = 0;
+  std::vector<glm::vec3> reference_;
   std::vector<float> exposures_;
   std::vector<Percept> percepts_;  // one per exposure
 };

@@ -279,6 +279,36 @@ TEST(HdrFlip, EqualsTheFormulasWrittenDirectly) {
   EXPECT_GT(largest, 0.2);  // the comparison is not of zeros
 }
 
+// Of a picture that differs in one spot only, what lies out of the filters' reach is left out: what lies in it is as beside
+// differences everywhere else, and the rest is 0.
+TEST(HdrFlip, ASpotAloneIsAsAmongOthers) {
+  constexpr int kWidth = 300, kHeight = 100, kReach = 10, kFar = 24;
+  const Pixels reference = Pattern(kWidth, kHeight, 1, 0.0f), other = Pattern(kWidth, kHeight, 2, 0.3f);
+  const FlipReference flip(reference, kWidth);
+  for (const auto& [column, row] : {std::pair(0, 0), {63, 15}, {64, 16}, {150, 47}, {127, 48}, {299, 99}}) {
+    Pixels alone = reference, among = other;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const auto i = static_cast<std::size_t>(y * kWidth + x);
+        if (std::max(std::abs(x - column), std::abs(y - row)) <= kFar) among[i] = reference[i];
+      }
+    }
+    const auto spot = static_cast<std::size_t>(row * kWidth + column);
+    alone[spot] = among[spot] = 3.0f * reference[spot] + 0.1f;
+    const std::vector<float> map = flip.MapOf(alone), beside = flip.MapOf(among);
+    int lit = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const auto i = static_cast<std::size_t>(y * kWidth + x);
+        const int away = std::max(std::abs(x - column), std::abs(y - row));
+        ASSERT_EQ(map[i], away > kReach ? 0.0f : beside[i]) << x << " " << y;
+        lit += map[i] > 0.0f;
+      }
+    }
+    EXPECT_GT(lit, 100) << column;
+  }
+}
+
 TEST(HdrFlip, EqualImagesAreZeroAndTheWorstIsNearOne) {
   const Pixels reference = Pattern(32, 24, 1, 0.0f);
   EXPECT_EQ(HdrFlip(reference, reference, 32), 0.0);
