@@ -47,7 +47,11 @@ bool IsFrom(const Technique& technique, const ClaimSource& source) {
 
 std::vector<CheckedClaim> CheckClaims(const ClaimSource& source, ClaimBench& bench) {
   std::vector<CheckedClaim> checked;
-  for (const Claim& claim : source.claims) checked.push_back({claim, claim.compute(bench)});
+  for (const Claim& claim : source.claims) {
+    Finding unknown;
+    unknown.note = "Needs the compilers of `arealab cost`.";
+    checked.push_back({claim, claim.needs_cost && !bench.has_cost() ? unknown : claim.compute(bench)});
+  }
   return checked;
 }
 
@@ -207,7 +211,9 @@ std::vector<ClaimsPage> CachedClaimsPages(const std::vector<ClaimSource>& source
                                           const std::filesystem::path& cache, const std::function<std::unique_ptr<ClaimBench>()>& bench) {
   ContentHash hash;
   std::ifstream program("/proc/self/exe", std::ios::binary);  // shader text and tables are in it
-  hash.Text(std::string(std::istreambuf_iterator<char>(program), {}));
+  for (std::vector<char> block(1 << 20); program.read(block.data(), static_cast<std::streamsize>(block.size())), program.gcount() > 0;) {
+    hash.Bytes(block.data(), static_cast<std::size_t>(program.gcount()));
+  }
   hash.Text(platform);
   std::unique_ptr<ClaimBench> made;
   std::vector<ClaimsPage> pages;

@@ -67,7 +67,8 @@ struct Claim {
   std::string sentence;  // what the text says, in our words
   std::string holds;     // when we say that it holds
   std::string command;   // shows the same by itself
-  std::function<Finding(ClaimBench&)> compute;
+  std::function<Finding(ClaimBench&)> compute;  // called only where what it needs is there
+  bool needs_cost = false;                      // the compilers of `arealab cost`
 };
 
 struct ClaimSource {

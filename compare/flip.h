@@ -23,6 +23,7 @@ class FlipReference {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  std::span<const glm::vec3> reference() const { return reference_; }
   const std::vector<float>& exposures() const {
     return exposures_;
   }  // EV; empty where the reference is not finite

@@ -146,7 +146,8 @@ void Measure(const RadianceImage& truth, const FlipReference* flip, VariantResul
   result->nonfinite_pixels = CountNonfinitePixels(image);
   result->diffuse = CompareImages(image.diffuse, truth.diffuse, truth.width);
   result->specular = CompareImages(image.specular, truth.specular, truth.width);
-  result->total = CompareImages(total, TotalRadiance(truth), truth.width);
+  result->total = flip != nullptr ? CompareImages(total, flip->reference(), truth.width)
+                                  : CompareImages(total, TotalRadiance(truth), truth.width);
   if (flip != nullptr) result->total.flip = flip->MeanOf(total);
 }
 

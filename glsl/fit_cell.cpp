@@ -95,28 +95,6 @@ WhiteNodes Whiten(const Whitening& whitening, const Nodes& nodes) {
   return white;
 }
 
-// Density of the lobe P ∘ whitening at one whitened direction, 1/sr, and ∂/∂p where asked for [Heitz et al.
-// 2016, eq. 1].
-double LtcDensity(const Terms& p, const glm::dvec3& v, double scale, Terms* gradient) {
-  const double ux = p[0] * v.x + p[2] * v.z, uz = p[1] * v.x + p[3] * v.z;
-  if (uz <= 0.0) {
-    if (gradient) gradient->setZero();
-    return 0.0;
-  }
-  const double determinant = Determinant(p);
-  const double length2 = ux * ux + v.y * v.y + uz * uz;
-  const double base = scale / (glm::pi<double>() * length2 * length2);
-  const double density = uz * determinant * base;
-  if (gradient) {
-    const double by_x = -4.0 * ux / length2 * density;
-    const double by_z = determinant * base - 4.0 * uz / length2 * density;
-    const double by_determinant = uz * base;
-    *gradient = {by_x * v.x + by_determinant * p[3], by_z * v.x - by_determinant * p[2],
-                 by_x * v.z - by_determinant * p[1], by_z * v.z + by_determinant * p[0]};
-  }
-  return density;
-}
-
 // ∫(ρ − k·LTC)² above the horizon over ∫ρ², with k = albedo/(1 − b), plus the penalty on b.
 Expansion ExpandDensityLoss(const Unknowns& p, const Nodes& nodes, const WhiteNodes& white,
                             const Whitening& whitening, double albedo, double total, double leak_penalty) {
@@ -267,6 +245,26 @@ class MaskedSum {
 };
 
 }  // namespace
+
+double LtcDensity(const Terms& p, const glm::dvec3& v, double scale, Terms* gradient) {
+  const double ux = p[0] * v.x + p[2] * v.z, uz = p[1] * v.x + p[3] * v.z;
+  if (uz <= 0.0) {
+    if (gradient) gradient->setZero();
+    return 0.0;
+  }
+  const double determinant = Determinant(p);
+  const double length2 = ux * ux + v.y * v.y + uz * uz;
+  const double base = scale / (glm::pi<double>() * length2 * length2);
+  const double density = uz * determinant * base;
+  if (gradient) {
+    const double by_x = -4.0 * ux / length2 * density;
+    const double by_z = determinant * base - 4.0 * uz / length2 * density;
+    const double by_determinant = uz * base;
+    *gradient = {by_x * v.x + by_determinant * p[3], by_z * v.x - by_determinant * p[2],
+                 by_x * v.z - by_determinant * p[1], by_z * v.z + by_determinant * p[0]};
+  }
+  return density;
+}
 
 Whitening MirrorWhitening(const View& view) {
   // The half vector's slope across is (l·n + v·n)/2 × the light's: a lobe that spreads to heights of α widens

@@ -31,6 +31,10 @@ struct LossQuads {
 };
 LossQuads MakeLossQuads(int count);
 
+// Density of the lobe `p` after a whitening with determinant `scale` at one whitened direction, 1/sr, and ∂/∂p where asked for
+// [Heitz et al. 2016, eq. 1].
+double LtcDensity(const Terms& p, const glm::dvec3& v, double scale, Terms* gradient);
+
 struct PolygonFit {
   int nodes = 24;             // per axis of the quadrature, more at grazing views
   double lobe_share = 0.1;    // of the loss: the quads scaled to the lobe

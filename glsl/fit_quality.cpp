@@ -52,28 +52,32 @@ void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int n
   point->bias = difference / total;
 }
 
-// The LTC's density at a unit direction, 1/sr [Heitz et al. 2016, eq. 1].
-double LobeAt(const glm::dvec4& m, double x, double y, double z) {
-  const double ux = m.x * x + m.z * z, uz = m.y * x + m.w * z, length2 = ux * ux + y * y + uz * uz;
-  return std::max(uz, 0.0) * (m.x * m.w - m.y * m.z) / (glm::pi<double>() * length2 * length2);
+// The LTC's share below the surface's horizon.
+double ShareBelow(const glm::dvec4& m) {
+  return 0.5 * (1.0 - m.x / std::hypot(m.x, m.y));
+}
+
+std::array<double, 3> MeasureCell(const LtcTables& tables, const std::vector<fit::Quad>& quads, double roughness, double degrees,
+                                  int node_count) {
+  Point point{roughness, degrees};
+  Measure(tables, quads, node_count, &point);
+  const fit::View view = fit::MakeView(tables.brdf, roughness, std::cos(glm::radians(degrees)));
+  const LtcLookup look = Look(tables, roughness, view.cosine);
+  const fit::Terms m(look.m.x, look.m.y, look.m.z, look.m.w);
+  const fit::Nodes nodes = fit::UpperNodes(view, node_count, node_count);
+  double difference = 0.0, total = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double lobe = fit::LtcDensity(m, {nodes.x[i], nodes.y[i], nodes.z[i]}, 1.0, nullptr) + look.terms.z * nodes.z[i] / glm::pi<double>();
+    difference += nodes.weight[i] * std::abs(nodes.density[i] - look.terms.x * lobe);
+    total += nodes.weight[i] * nodes.density[i];
+  }
+  return {point.relative_rmse, difference / total, ShareBelow(look.m)};
 }
 
 }  // namespace
 
 std::array<double, 3> MeasureFitAt(const LtcTables& tables, double roughness, double degrees, const MeasureOptions& options) {
-  Point point{roughness, degrees};
-  Measure(tables, fit::RandomRectangles(options.rectangles, options.seed), options.nodes, &point);
-  const fit::View view = fit::MakeView(tables.brdf, roughness, std::cos(glm::radians(degrees)));
-  const LtcLookup look = Look(tables, roughness, view.cosine);
-  const fit::Nodes nodes = fit::UpperNodes(view, options.nodes, options.nodes);
-  double difference = 0.0, total = 0.0;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double cosine_lobe = nodes.z[i] / glm::pi<double>();
-    const double fitted = look.terms.x * (LobeAt(look.m, nodes.x[i], nodes.y[i], nodes.z[i]) + look.terms.z * cosine_lobe);
-    difference += nodes.weight[i] * std::abs(nodes.density[i] - fitted);
-    total += nodes.weight[i] * nodes.density[i];
-  }
-  return {point.relative_rmse, difference / total, 0.5 * (1.0 - look.m.x / std::hypot(look.m.x, look.m.y))};
+  return MeasureCell(tables, fit::RandomRectangles(options.rectangles, options.seed), roughness, degrees, options.nodes);
 }
 
 FitMap MapFit(const LtcTables& tables, const MeasureOptions& options, const std::function<void(double)>& progress) {
@@ -81,6 +85,7 @@ FitMap MapFit(const LtcTables& tables, const MeasureOptions& options, const std:
   map.table = TableName(tables.brdf, tables.kind);
   map.brdf = Name(tables.brdf);
   map.options = options;
+  const std::vector<fit::Quad> quads = fit::RandomRectangles(options.rectangles, options.seed);
   map.roughness.assign(std::begin(kMapRoughness), std::end(kMapRoughness));
   map.degrees.assign(std::begin(kMapDegrees), std::end(kMapDegrees));
   const std::size_t columns = map.degrees.size(), cells = map.roughness.size() * columns;
@@ -88,7 +93,7 @@ FitMap MapFit(const LtcTables& tables, const MeasureOptions& options, const std:
   std::mutex mutex;
   std::size_t done = 0;
   tbb::parallel_for(std::size_t{0}, cells, [&](std::size_t i) {
-    const auto [polygon, lobe, below] = MeasureFitAt(tables, map.roughness[i / columns], map.degrees[i % columns], options);
+    const auto [polygon, lobe, below] = MeasureCell(tables, quads, map.roughness[i / columns], map.degrees[i % columns], options.nodes);
     map.polygon[i] = polygon;
     map.lobe[i] = lobe;
     map.below[i] = below;
@@ -154,8 +159,7 @@ FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options,
 
   for (int row = 0; row < tables.size; ++row) {
     for (int column = 0; column < tables.size; ++column) {
-      const glm::dvec4 m = NodeMatrix(tables, row, column);
-      const double leak = 0.5 * (1.0 - m.x / std::hypot(m.x, m.y));
+      const double leak = ShareBelow(NodeMatrix(tables, row, column));
       quality.leak_mean += leak;
       quality.leak_max = std::max(quality.leak_max, leak);
     }
