@@ -164,7 +164,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   {
     Progress progress;
     options.progress = [&](const std::string& what, double fraction) { progress.Show(what, fraction); };
-    ReportWriter report(arguments.out, options.scenes.size());
+    ReportWriter report(arguments.out);
     options.done = [&](SceneResult& scene) {
       report.Add(scene);
       scene.ReleaseImages();

@@ -269,13 +269,16 @@ void Resize(FlipReference::Percept& percept, std::size_t size) {
     plane->resize(size);
 }
 
-void FilterRows(const Planar& image, float exposure, Planes7& planes) {
+// Fills the rows of the bands of kBand that `needed` says.
+void FilterRows(const Planar& image, float exposure, const std::vector<bool>& needed, Planes7& planes) {
   const auto stride = static_cast<std::ptrdiff_t>(image.stride);
   for (auto& plane : planes) plane.resize(image.stride * static_cast<std::size_t>(image.height + 2 * kPad));
   static const Kernels kernels = ChooseKernels();
-  tbb::parallel_for(tbb::blocked_range<int>(0, image.height, 16), [&](const tbb::blocked_range<int>& rows) {
+  tbb::parallel_for(std::size_t{0}, needed.size(), [&](std::size_t band) {
+    if (!needed[band]) return;
     std::vector<float> scratch(3 * (image.stride + 2 * kPad));
-    for (int y = rows.begin(); y < rows.end(); ++y) {
+    const int begin = static_cast<int>(band) * kBand;
+    for (int y = begin; y < std::min(begin + kBand, image.height); ++y) {
       kernels.filter_row(image, y, std::exp2(exposure), TheFilters(), scratch.data(), planes);
     }
   });
@@ -341,7 +344,7 @@ FlipReference::FlipReference(std::span<const glm::vec3> reference, int width) : 
   static const Kernels kernels = ChooseKernels();
   Planes7 planes;
   for (float exposure : exposures_) {
-    FilterRows(image, exposure, planes);
+    FilterRows(image, exposure, std::vector<bool>(static_cast<std::size_t>((height_ + kBand - 1) / kBand), true), planes);
     Percept percept;
     Resize(percept, image.stride * static_cast<std::size_t>(height_));
     tbb::parallel_for(tbb::blocked_range<int>(0, height_, 16), [&](const tbb::blocked_range<int>& rows) {
@@ -368,13 +371,19 @@ std::vector<float> FlipReference::MapOf(std::span<const glm::vec3> test) const {
   static const float largest_color = LargestColorDistance();
   std::vector<float> padded(image.stride * static_cast<std::size_t>(height_), 0.0f);
   const std::vector<bool> differing = DifferingBlocks(test, reference_, width_, height_);
+  const int columns = (width_ + kBlock - 1) / kBlock, bands = (height_ + kBand - 1) / kBand;
+  std::vector<bool> needed(static_cast<std::size_t>(bands), false);  // a filter reaches the bands above and below
+  for (int i = 0; i < columns * bands; ++i) {
+    if (!differing[static_cast<std::size_t>(i)]) continue;
+    const int band = i / columns;
+    for (int b = std::max(band - 1, 0); b <= std::min(band + 1, bands - 1); ++b) needed[static_cast<std::size_t>(b)] = true;
+  }
   Planes7 planes;
   for (std::size_t e = 0; e < exposures_.size(); ++e) {
-    FilterRows(image, exposures_[e], planes);
-    tbb::parallel_for(0, (height_ + kBand - 1) / kBand, [&](int band) {
+    FilterRows(image, exposures_[e], needed, planes);
+    tbb::parallel_for(0, bands, [&](int band) {
       Percept percept;
       Resize(percept, kBlock);
-      const int columns = (width_ + kBlock - 1) / kBlock;
       for (int begin = 0; begin < width_; begin += kBlock) {
         if (!differing[static_cast<std::size_t>(band * columns + begin / kBlock)]) continue;
         const int end = std::min(begin + kBlock, width_);

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -146,8 +145,8 @@ struct Rounding {
 };
 
 // Half floats are finer in the dark than any map shows: below a quarter of the truth's mean luminance m their
-// step at m/4 is kept, an error of at most 2⁻¹³ m. Where the truth alone would still take more than 0.9 bytes
-// a pixel on the page (fine texture all over) the step is doubled until it does not, at most to 2⁻⁸ m.
+// step at m/4 is kept, an error of at most 2⁻¹³ m. Where the truth alone would then take more than 0.5 bytes
+// a pixel on the page (fine texture all over) it is the step at 4 m, 2⁻⁹ m.
 constexpr double kCoarseBelow = 1.0 / 4.0, kCoarsest = 4.0, kBytesPerPixel = 0.5;
 constexpr int kTruthBits = 3;           // steps of 0.8 %: below what a picture shows; differences to it are kept finer
 constexpr double kSmallFile = 65536.0;  // bytes; never worth it
@@ -155,10 +154,11 @@ constexpr double kSmallFile = 65536.0;  // bytes; never worth it
 Rounding ChooseRounding(const SceneResult& scene, double mean_luminance) {
   Rounding rounding;
   if (!scene.truth) return rounding;
-  for (double below = kCoarseBelow; below <= kCoarsest; below *= 2.0) {
+  for (double below : {kCoarseBelow, kCoarsest}) {
     rounding.coarse_below = static_cast<float>(below * mean_luminance);
     rounding.truth = ToHalf(*scene.truth, rounding.coarse_below);
     DropBits(rounding.truth, kTruthBits);
+    if (below == kCoarsest) break;
     const double bytes = static_cast<double>(EncodePageImage({}, rounding.truth).size());
     if (bytes <= std::max(kSmallFile, kBytesPerPixel * static_cast<double>(scene.truth->size()))) break;
   }
@@ -177,18 +177,13 @@ struct Job {
 };
 
 // What is far off needs fewer digits: a variant's values are kept to at most 1/8 of its own relative RMSE,
-// which moves them by a thirtieth of that (uniform: step/√12), and in steps of at most 2^(most_bits − 10).
-int DroppedBits(const VariantResult& variant, int most_bits) {
+// which moves them by a thirtieth of that (uniform: step/√12), and in steps of at most the truth's. Wider steps make larger
+// files: what is left beside the truth is then less smooth.
+int DroppedBits(const VariantResult& variant) {
   const double error = variant.total.rel_rmse;
   if (!(error > 0.0)) return 0;
-  return std::clamp(static_cast<int>(std::floor(std::log2(std::min(error, 100.0) / 8.0 * 1024.0))), 0,
-                    most_bits);
+  return std::clamp(static_cast<int>(std::floor(std::log2(std::min(error, 100.0) / 8.0 * 1024.0))), 0, kTruthBits);
 }
-
-// What the folder may take at 512×512, and the steps that are tried for it: 0.8 % is below what any map shows
-// by default, 3 % is seen as bands.
-constexpr double kMostBytes = 56e6;
-constexpr int kFewestBits = 3, kMostBits = 5;
 
 constexpr int kThumbnailSide = 192;  // pixels at most: what the page gives it
 
@@ -227,8 +222,7 @@ void Coarsen(HalfImage& shadowed, const HalfImage& truth) {
   }
 }
 
-// Returns how many bytes they take, the thumbnail's aside.
-std::size_t WriteImages(const Job& job, int most_bits, const fs::path& root) {
+void WriteImages(const Job& job, const fs::path& root) {
   const SceneResult& scene = *job.scene;
   const Rounding& rounding = *job.rounding;
   const std::string key = job.folder + "/" + job.stem;
@@ -238,20 +232,19 @@ std::size_t WriteImages(const Job& job, int most_bits, const fs::path& root) {
   } else if (scene.truth && job.kind != Job::Kind::kEmission) {
     half = ToHalf(*job.image, rounding.coarse_below, *scene.truth, rounding.truth);
     if (job.kind == Job::Kind::kShadowed) Coarsen(half, rounding.truth);
-    if (job.variant) DropBits(half, DroppedBits(*job.variant, most_bits));
+    if (job.variant) DropBits(half, DroppedBits(*job.variant));
   } else {
     half = ToHalf(*job.image);
   }
   const bool beside_truth = job.kind == Job::Kind::kShadowed || job.kind == Job::Kind::kVariant;
-  const std::string script = EncodePageImage(key, half, beside_truth && scene.truth ? &rounding.truth : nullptr);
-  WriteText(root / "data" / job.folder / (job.stem + ".js"), script);
-  if (job.kind == Job::Kind::kEmission) return script.size();
-  const fs::path images = root / "images" / job.folder, exr = images / (job.stem + ".exr");
-  WriteExr(exr, half, ExrLoss::kForTheEye);
+  WriteText(root / "data" / job.folder / (job.stem + ".js"),
+            EncodePageImage(key, half, beside_truth && scene.truth ? &rounding.truth : nullptr));
+  if (job.kind == Job::Kind::kEmission) return;
+  const fs::path images = root / "images" / job.folder;
+  WriteExr(images / (job.stem + ".exr"), half, ExrLoss::kForTheEye);
   const std::span<const glm::vec3> emission =
       scene.emission ? std::span<const glm::vec3>(*scene.emission) : std::span<const glm::vec3>();
   WriteThumbnail(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width, scene.exposure);
-  return script.size() + fs::file_size(exr);
 }
 
 // The luminance below which a relative difference is taken relative to this instead: 1 % of the truth's mean
@@ -361,19 +354,17 @@ struct ReportWriter::Pictures {
 };
 
 struct ReportWriter::State {
-  State(const fs::path& directory, std::size_t scene_count)
-      : partial(Normal(directory)), bytes(kMostBytes / static_cast<double>(std::max<std::size_t>(scene_count, 1))) {}
+  explicit State(const fs::path& directory) : partial(Normal(directory)) {}
 
   PartialFolder partial;
-  double bytes;  // for a scene at 512×512
   std::set<std::string> folders;
   std::vector<Pictures> scenes;
 };
 
-ReportWriter::ReportWriter(const fs::path& directory, std::size_t scenes) {
+ReportWriter::ReportWriter(const fs::path& directory) {
   CheckReportDirectory(directory);
   RemoveStale(Normal(directory));
-  state_ = std::make_unique<State>(directory, scenes);
+  state_ = std::make_unique<State>(directory);
 }
 
 ReportWriter::~ReportWriter() = default;
@@ -419,19 +410,7 @@ void ReportWriter::Add(const SceneResult& scene) {
     add(image, "emission", Job::Kind::kEmission);
   }
 
-  // Every fifth picture tells how many bits to spare; the others follow.
-  constexpr std::size_t kStride = 5;
-  const double most = state_->bytes * scene.width * scene.height / (512.0 * 512.0);
-  int bits = kFewestBits;
-  for (;; ++bits) {
-    std::atomic<std::size_t> bytes{0};
-    tbb::parallel_for(std::size_t{0}, (jobs.size() + kStride - 1) / kStride,
-                      [&](std::size_t i) { bytes += WriteImages(jobs[kStride * i], bits, root); });
-    if (bits == kMostBits || static_cast<double>(kStride * bytes) <= most) break;
-  }
-  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
-    if (i % kStride != 0) WriteImages(jobs[i], bits, root);
-  });
+  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) { WriteImages(jobs[i], root); });
   state_->scenes.push_back(std::move(pictures));
 }
 
@@ -465,7 +444,7 @@ void ReportWriter::Finish(const Results& results) {
 }
 
 void WriteReport(const Results& results, const fs::path& directory) {
-  ReportWriter writer(directory, results.scenes.size());
+  ReportWriter writer(directory);
   for (const SceneResult& scene : results.scenes) writer.Add(scene);
   writer.Finish(results);
 }

@@ -28,8 +28,8 @@ void CheckReportDirectory(const std::filesystem::path& directory);
 // Names are the scene's and the variant's, with '_' for what a file name should not hold.
 class ReportWriter {
  public:
-  // `scenes`: how many there will be. Both throw InputError where the folder cannot be written.
-  ReportWriter(const std::filesystem::path& directory, std::size_t scenes);
+  // Both throw InputError where the folder cannot be written.
+  explicit ReportWriter(const std::filesystem::path& directory);
   ~ReportWriter();  // of a report that was not finished nothing stays
   // The pictures of the next scene of the results; they need not be kept after it. One call at a time, from any thread.
   void Add(const SceneResult& scene);

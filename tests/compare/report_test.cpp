@@ -576,7 +576,7 @@ TEST(Report, NothingStaysOfOneThatWasNotFinished) {
   const Folder folder;
   const Results results = Small();
   {
-    ReportWriter writer(folder / "report", results.scenes.size());
+    ReportWriter writer(folder / "report");
     writer.Add(results.scenes[0]);
     EXPECT_FALSE(fs::exists(folder / "report"));
   }
@@ -588,7 +588,7 @@ TEST(Report, IsTheSameWithoutTheImagesThatWereAdded) {
   const Folder folder;
   Results results = Small();
   WriteReport(results, folder / "whole");
-  ReportWriter writer(folder / "piecewise", results.scenes.size());
+  ReportWriter writer(folder / "piecewise");
   for (SceneResult& scene : results.scenes) {
     writer.Add(scene);
     scene.ReleaseImages();
