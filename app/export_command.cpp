@@ -142,8 +142,8 @@ nlohmann::ordered_json InputsJson(const Variant& variant, const std::vector<Effe
       {"lights", lights},
       {"rows_per_light", kLightRows},
       {"rows",
-       {"xyz centre (m, world), w shape: 0 rectangle, 1 disk or ellipse, 2 sphere, 3 polygon", "xyz unit normal of the lit side = axis_x × axis_y, w 1 if lit on both sides",
-        "xyz unit axis_x, w half width (m); disk and sphere: radius; ellipse: half axis; polygon: reach", "xyz unit axis_y, w half height (m); else as above",
+       {"xyz centre (m, world), w shape: 0 rectangle, 1 disk or ellipse, 2 sphere, 3 polygon, 4 tube", "xyz unit normal of the lit side = axis_x × axis_y, w 1 if lit on both sides",
+        "xyz unit axis_x, w half width (m); disk and sphere: radius; ellipse: half axis; polygon: reach; tube: half its length", "xyz unit axis_y, w half height (m); tube: radius; else as above",
         "xyz axis_x × half width, w area of one side (m²); sphere: π radius²", "xyz axis_y × half height, w corners of a polygon", "xyz radiance, linear RGB",
         "xyz half width², half height², twice their product (m²)"}}};
   if (shader.text.find("uniform CornerBlock") != std::string::npos) {

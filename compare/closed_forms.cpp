@@ -169,6 +169,34 @@ ConeHorizon ClipToHorizon(const LightCone& cone) {
   return result;
 }
 
+namespace {
+
+// A place of a cone's outline.
+struct ConePlace {
+  double sine, cosine;  // of the ellipse's own angle ψ'
+  glm::dvec3 direction;
+};
+
+ConePlace PlaceAt(const LightCone& cone, double psi) {
+  const double c = std::cos(psi), s = std::sin(psi), w = std::hypot(c * cone.cos_1, s * cone.cos_2);
+  return {s * cone.cos_2 / w, c * cone.cos_1 / w, cone.axis_1 * (cone.sin_1 * c) + cone.axis_2 * (cone.sin_2 * s) + cone.axis_3 * w};
+}
+
+}  // namespace
+
+double ConeContour(const LightCone& cone, double psi_begin, double psi_end) {
+  // ∮ n·(l × dl) over the arc, p = axis_3 + a cosψ' axis_1 + b sinψ' axis_2: p × p' = −b cosψ' axis_1 − a sinψ' axis_2 + ab axis_3,
+  // |p|² = 1 + a² cos² + b² sin². With the sphere's angle ψ, sinψ' = s cos_2/w and cosψ' = c cos_1/w, w² = (c cos_1)² + (s cos_2)²,
+  // tan_1 = a, tan_2 = b.
+  const double cos_1 = cone.cos_1, cos_2 = cone.cos_2, sin_1 = cone.sin_1, sin_2 = cone.sin_2;
+  const double tan2_difference = (sin_1 * cos_2 - sin_2 * cos_1) * (sin_1 * cos_2 + sin_2 * cos_1) / (cos_1 * cos_1 * cos_2 * cos_2);
+  const double root = std::sqrt(std::max(tan2_difference, 0.0)), kappa = root * cos_1, j = root * cos_2;
+  const ConePlace begin = PlaceAt(cone, psi_begin), end = PlaceAt(cone, psi_end);
+  const double i1 = (sin_2 / cos_2) * cos_1 * cos_1 * (AtanhOver(kappa, end.sine) - AtanhOver(kappa, begin.sine));
+  const double i2 = -(sin_1 / cos_1) * cos_2 * cos_2 * (AtanOver(j, end.cosine) - AtanOver(j, begin.cosine));
+  return -cone.axis_1.z * i1 - cone.axis_2.z * i2 + cone.axis_3.z * sin_1 * sin_2 * (psi_end - psi_begin);
+}
+
 double ConeFormFactor(const LightCone& cone, const ConeHorizon& horizon) {
   using Kind = ConeHorizon::Kind;
   if (horizon.kind == Kind::kBelow) {
@@ -177,36 +205,10 @@ double ConeFormFactor(const LightCone& cone, const ConeHorizon& horizon) {
   if (horizon.kind == Kind::kAbove) {
     return cone.axis_3.z * cone.sin_1 * cone.sin_2;
   }
-  // Contour integral ∮ n·(l × dl) / 2π over the arc, p = axis_3 + a cosψ' axis_1 + b sinψ' axis_2:
-  // p × p' = −b cosψ' axis_1 − a sinψ' axis_2 + ab axis_3, |p|² = 1 + a² cos² + b² sin²; then the chord on
-  // the horizon. With the sphere's angle ψ, sinψ' = s cos_2/w and cosψ' = c cos_1/w, w² = (c cos_1)² + (s
-  // cos_2)², tan_1 = a, tan_2 = b.
-  double cos_1 = cone.cos_1, cos_2 = cone.cos_2, sin_1 = cone.sin_1, sin_2 = cone.sin_2;
-  double tan2_difference =
-      (sin_1 * cos_2 - sin_2 * cos_1) * (sin_1 * cos_2 + sin_2 * cos_1) / (cos_1 * cos_1 * cos_2 * cos_2);
-  double kappa = std::sqrt(std::max(tan2_difference, 0.0)) * cos_1,
-         j = std::sqrt(std::max(tan2_difference, 0.0)) * cos_2;
-  struct End {
-    double sine, cosine;  // of ψ'
-    glm::dvec3 direction;
-  };
-  auto end = [&](double psi) {
-    double c = std::cos(psi), s = std::sin(psi);
-    double w = std::hypot(c * cos_1, s * cos_2);
-    End e;
-    e.cosine = c * cos_1 / w;
-    e.sine = s * cos_2 / w;
-    e.direction = cone.axis_1 * (sin_1 * c) + cone.axis_2 * (sin_2 * s) + cone.axis_3 * w;
-    return e;
-  };
-  End begin = end(horizon.psi_begin), stop = end(horizon.psi_end);
-  double i1 = (sin_2 / cos_2) * cos_1 * cos_1 * (AtanhOver(kappa, stop.sine) - AtanhOver(kappa, begin.sine));
-  double i2 = -(sin_1 / cos_1) * cos_2 * cos_2 * (AtanOver(j, stop.cosine) - AtanOver(j, begin.cosine));
-  double i3 = sin_1 * sin_2 * (horizon.psi_end - horizon.psi_begin);
-  double arc = -cone.axis_1.z * i1 - cone.axis_2.z * i2 + cone.axis_3.z * i3;
-  const glm::dvec3 &p = stop.direction, &q = begin.direction;  // the chord closes the outline
-  double chord = std::atan2(p.x * q.y - p.y * q.x, p.x * q.x + p.y * q.y);
-  return std::max((arc + chord) / (2.0 * kPi), 0.0);
+  // The chord on the horizon closes the outline.
+  const glm::dvec3 p = PlaceAt(cone, horizon.psi_end).direction, q = PlaceAt(cone, horizon.psi_begin).direction;
+  const double chord = std::atan2(p.x * q.y - p.y * q.x, p.x * q.x + p.y * q.y);
+  return std::max((ConeContour(cone, horizon.psi_begin, horizon.psi_end) + chord) / (2.0 * kPi), 0.0);
 }
 
 }  // namespace arealab

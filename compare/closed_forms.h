@@ -52,4 +52,7 @@ ConeHorizon ClipToHorizon(const LightCone& cone);
 // ∫ cosθ/π dω over the part of the cone above the horizon, normal z.
 double ConeFormFactor(const LightCone& cone, const ConeHorizon& horizon);
 
+// What the cone's outline from ψ = begin to end, in either turn, adds to 2π times the form factor of a region that it bounds.
+double ConeContour(const LightCone& cone, double begin, double end);
+
 }  // namespace arealab

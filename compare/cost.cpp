@@ -352,7 +352,7 @@ void CostMeter::Store(const fs::path& file, const ShaderCost& cost) {
 }
 
 Scene SceneOfEffects(const std::vector<std::string>& effects) {
-  constexpr std::array kNames = {"rectangle", "disk", "sphere", "polygon", "ellipse", "two_sided", "diffuse", "specular", "fresnel", "textured", "many_lights"};
+  constexpr std::array kNames = {"rectangle", "disk", "sphere", "polygon", "ellipse", "tube", "two_sided", "diffuse", "specular", "fresnel", "textured", "many_lights"};
   for (const std::string& effect : effects) {
     if (std::find(kNames.begin(), kNames.end(), effect) == kNames.end()) {
       throw InputError(fmt::format("no effect \"{}\"; expected of {}", effect, fmt::join(kNames, ", ")));
@@ -365,6 +365,7 @@ Scene SceneOfEffects(const std::vector<std::string>& effects) {
     Light& light = scene.lights.emplace_back();
     light.shape = shape;
     if (shape == LightShape::kEllipse) light.half_size.y = 0.3;
+    if (shape == LightShape::kTube) light.half_size.y = 0.05;
     if (shape == LightShape::kPolygon) SetCorners(light, {{-0.5, -0.4}, {0.5, -0.4}, {0.6, 0.2}, {0.0, 0.6}, {-0.6, 0.2}});
   }
   if (!scene.lights.empty()) {

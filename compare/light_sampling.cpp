@@ -62,6 +62,23 @@ std::optional<LightDirections> LightDirections::From(const glm::dvec3& position,
     result.solid_angle_ = kPi * result.cone_.sin_1 * result.cone_.sin_2;
     return result;
   }
+  if (light.shape == LightShape::kTube) {
+    // Third axis: from the tube's to the point.
+    const double half = light.half_size.x, radius = light.half_size.y;
+    const glm::dvec3 across = -center + light.axis_x * glm::dot(center, light.axis_x);
+    const double distance = glm::length(across);
+    if (distance <= radius) return std::nullopt;
+    const glm::dvec3 toward = across / distance;
+    const double rise = half * std::abs(glm::dot(light.axis_x, normal)) + radius * glm::length(glm::cross(light.axis_x, normal));
+    if (glm::dot(center, normal) + rise <= 0.0) return std::nullopt;
+    result.axis_ = {light.axis_x, glm::cross(toward, light.axis_x), toward};
+    result.back_ = distance;
+    result.widest_ = std::acos(radius / distance);
+    result.area_ = 4.0 * result.widest_ * radius * half;
+    const double distance2 = glm::dot(center, center);
+    result.solid_angle_ = 4.0 * half * radius * distance / (distance2 * std::sqrt(distance2));
+    return result;
+  }
   result.axis_ = {light.axis_x, light.axis_y, light.normal};
   result.back_ = -glm::dot(center, light.normal);
   if (result.back_ < 0.0 && light.two_sided) {
@@ -141,6 +158,11 @@ LightDirections LightDirections::Sky(const glm::dvec3& normal) {
 }
 
 LightDirections::Sample LightDirections::At(const glm::dvec2& u) const {
+  if (shape_ == LightShape::kTube) {
+    const double angle = widest_ * (2.0 * u.x - 1.0);
+    const glm::dvec3 outwards = axis_[2] * std::cos(angle) + axis_[1] * std::sin(angle);
+    return OnTube(center_ + axis_[0] * (half_size_.x * (2.0 * u.y - 1.0)) + outwards * half_size_.y, outwards);
+  }
   if (shape_ == LightShape::kPolygon) {
     // A triangle by the shares of the area, then a point of it, even over the area.
     const auto found = std::upper_bound(shares_.begin(), shares_.end() - 1, u.x);
@@ -187,7 +209,23 @@ LightDirections::Sample LightDirections::At(const glm::dvec2& u) const {
   return {World(glm::dvec3(x, y, -back_)) / distance, distance, density};
 }
 
+LightDirections::Sample LightDirections::OnTube(const glm::dvec3& to, const glm::dvec3& outwards) const {
+  const double distance = glm::length(to);
+  return {to / distance, distance, distance * distance * distance / std::max(-glm::dot(to, outwards) * area_, 1e-300)};
+}
+
 std::optional<LightDirections::Sample> LightDirections::Towards(const glm::dvec3& direction) const {
+  if (shape_ == LightShape::kTube) {
+    // The nearer meeting of the ray and the wall.
+    const glm::dvec3 across = direction - axis_[0] * glm::dot(direction, axis_[0]);
+    const double a = glm::dot(across, across), b = glm::dot(across, axis_[2]) * back_;
+    const double c = (back_ - half_size_.y) * (back_ + half_size_.y), d = b * b - a * c;
+    if (b >= 0.0 || d <= 0.0) return std::nullopt;
+    const glm::dvec3 to = direction * (c / (std::sqrt(d) - b)), from_center = to - center_;
+    const double along = glm::dot(from_center, axis_[0]);
+    if (std::abs(along) > half_size_.x) return std::nullopt;
+    return OnTube(to, (from_center - axis_[0] * along) / half_size_.y);
+  }
   if (shape_ == LightShape::kPolygon) {
     const double facing = -glm::dot(direction, axis_[2]);
     if (facing <= 0.0) return std::nullopt;
@@ -231,6 +269,14 @@ std::optional<LightDirections::Sample> LightDirections::Towards(const glm::dvec3
 
 std::array<glm::dvec3, 4> LightDirections::Corners() const {
   const auto corner = [&](double a, double b) {
+    if (shape_ == LightShape::kTube) {
+      // In the plane of the axis that faces the point: the wall's places seen there lie at most back/(back − radius) as far along, and
+      // its lines of contact at radius/√(1 − (radius/back)²).
+      const double radius = half_size_.y, grown = back_ / (back_ - radius), beside = radius / std::sqrt(1.0 - radius * radius / (back_ * back_));
+      const double along = glm::dot(center_, axis_[0]), near = along + a * half_size_.x;
+      const double end = a < 0.0 ? std::min(near, near * grown) : std::max(near, near * grown);
+      return center_ + axis_[0] * (end - along) + axis_[1] * (b * beside);
+    }
     if (shape_ == LightShape::kSphere) {
       return cone_.axis_3 * cone_.cos_1 + cone_.axis_1 * (a * cone_.sin_1) + cone_.axis_2 * (b * cone_.sin_2);
     }

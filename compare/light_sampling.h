@@ -35,7 +35,7 @@ class LightDirections {
     double distance;       // m, to the light's surface
     double density;        // 1/sr
   };
-  // Rectangles by solid angle [Ureña et al. 2013], by area where they are tiny; polygons by area; disks, ellipses and spheres evenly over
+  // Rectangles by solid angle [Ureña et al. 2013], by area where they are tiny; polygons and the wall of a tube by area; disks, ellipses and spheres evenly over
   // the projection of their cone along its axis. `u` in [0, 1)². Directions below the horizon are given too.
   Sample At(const glm::dvec2& u) const;
 
@@ -57,6 +57,9 @@ class LightDirections {
     return axis_[0] * local.x + axis_[1] * local.y + axis_[2] * local.z;
   }
 
+  // The sample at a place of a tube's wall, from the point; the wall's unit normal there.
+  Sample OnTube(const glm::dvec3& to, const glm::dvec3& outwards) const;
+
   LightShape shape_ = LightShape::kRectangle;
   // Right-handed and unit. Flat lights: their own, the third towards the point.
   std::array<glm::dvec3, 3> axis_;
@@ -70,7 +73,8 @@ class LightDirections {
   bool by_area_ = false;
   std::vector<glm::dvec2> corners_;     // of a polygon, in the axes about the centre, counter-clockwise
   std::vector<double> shares_;          // of its area, up to and with each triangle about the first corner
-  double area_ = 0.0;                   // m², of a polygon
+  double area_ = 0.0;                   // m², of a polygon or of the wall of a tube that is seen
+  double widest_ = 0.0;                 // rad, of that wall, to either side; half_size_: half length, radius
   bool sky_ = false;
 };
 

@@ -57,6 +57,8 @@ const std::array kAllowances{
                     "the techniques' normals are unit, and the G-buffer makes them so: of others a value is "
                     "asked, not which"},
     StressAllowance{"ltc", "thin", {0.15, 0.06, 8.0}, kThin},
+    StressAllowance{"ltc", "tube_thin", {0.15, 0.06, 8.0}, kThin},
+    StressAllowance{"ltc", "tube_crossing", {1e-3, 1.5e-4, 8.0}, "the same: the two long sides of 1 : 50, cut at the horizon"},
     StressAllowance{"ltc", "on_edge", {1e-3, 2e-5, 1e3}, kCorner},
     StressAllowance{"ltc", "on_corner", {1e-3, 2e-5, 1e4}, kCorner},
     StressAllowance{"ltc", "corners", {1e-3, 2e-5, kUnbounded}, kCorner},
@@ -110,6 +112,7 @@ const std::array kAllowances{
     StressAllowance{"reference", "far", {kUnbounded, kUnbounded, kUnbounded}, kPolar},
     StressAllowance{"reference", "huge", {1.0, 0.1, 8.0}, kPolar},
     StressAllowance{"reference", "thin", {0.2, 0.1, 8.0}, kPolar},
+    StressAllowance{"reference", "tube_thin", {kUnbounded, kUnbounded, kUnbounded}, kPolar},
 };
 
 double FormFactorFaced(const PointCase& c) {
@@ -118,6 +121,11 @@ double FormFactorFaced(const PointCase& c) {
   if (half.x <= 0.0 || half.y <= 0.0) return 0.0;
   if (c.shape == LightShape::kSphere)
     return std::min(half.x * half.x / std::max(glm::dot(from_center, from_center), 1e-300), 1.0);
+  if (c.shape == LightShape::kTube) {
+    const double along = glm::dot(from_center, c.axis_x), beyond = std::max(std::abs(along) - half.x, 0.0);
+    const double area = 4.0 * half.x * half.y;
+    return area / (area + std::numbers::pi * (glm::dot(from_center, from_center) - along * along + beyond * beyond));
+  }
   const glm::dvec2 in_plane(glm::dot(from_center, c.axis_x), glm::dot(from_center, c.axis_y));
   const double height = glm::dot(from_center, c.light_normal);
   const double radius = glm::length(in_plane);

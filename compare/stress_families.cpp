@@ -20,6 +20,7 @@ const std::vector<LightShape> kAll{LightShape::kRectangle, LightShape::kDisk, Li
 const std::vector<LightShape> kFlat{LightShape::kRectangle, LightShape::kDisk};
 const std::vector<LightShape> kCornered{LightShape::kRectangle};
 const std::vector<LightShape> kRound{LightShape::kSphere};
+const std::vector<LightShape> kTubes{LightShape::kTube};
 
 double Length(const PointCase& c) {
   return std::max(c.half_size.x, c.half_size.y);
@@ -27,7 +28,7 @@ double Length(const PointCase& c) {
 
 // Half sizes x and y of a rectangle; other shapes take x.
 void SetSize(PointCase& c, double x, double y) {
-  c.half_size = {x, c.shape == LightShape::kRectangle ? y : x};
+  c.half_size = {x, c.shape == LightShape::kRectangle || c.shape == LightShape::kTube ? y : x};
 }
 
 // Turns the light's lit side to `normal`, its axes about it at random.
@@ -197,6 +198,49 @@ PointCase Contact(CaseRandom& random, LightShape shape) {
     FaceTo(c, -c.normal, random);
   }
   PlacePoint(c, x, y, gap * Length(c));
+  return c;
+}
+
+// A tube of 0.4 to 4 m and a radius of a hundredth to a half of that.
+PointCase OrdinaryTube(CaseRandom& random, LightShape shape) {
+  PointCase c = Ordinary(random, shape);
+  c.half_size.y = c.half_size.x * random.Log(2e-2, 1.0);
+  return c;
+}
+
+// The point beside the wall, or beyond an end, 1e-6 to 0.1 of the radius outside of the cylinder, prolonged, or inside.
+PointCase AtTube(CaseRandom& random, LightShape shape) {
+  PointCase c = OrdinaryTube(random, shape);
+  const double distance = c.half_size.y * (random.Chance(0.2) ? random(0.0, 1.0) : 1.0 + random.Log(1e-6, 0.1));
+  c.center = c.position - c.axis_x * (random(-1.5, 1.5) * c.half_size.x) - c.light_normal * distance;
+  return c;
+}
+
+// A tube seen nearly along its axis, from 1e-4 to 0.1 rad beside it.
+PointCase AlongTube(CaseRandom& random, LightShape shape) {
+  PointCase c = OrdinaryTube(random, shape);
+  const dvec3 to_center = glm::normalize(c.center - c.position);
+  c.axis_x = glm::normalize(to_center + random.Log(1e-4, 0.1) * random.Perpendicular(to_center));
+  c.axis_y = random.Perpendicular(c.axis_x);
+  c.light_normal = glm::cross(c.axis_x, c.axis_y);
+  return c;
+}
+
+// A tube cut by the horizon.
+PointCase CrossingTube(CaseRandom& random, LightShape shape) {
+  PointCase c = OrdinaryTube(random, shape);
+  const dvec3 inside = c.center + c.axis_x * (c.half_size.x * random(-1.0, 1.0)) + c.axis_y * (c.half_size.y * random(-1.0, 1.0)) - c.position;
+  const double cosine = glm::dot(c.normal, c.to_view);
+  c.normal = random.Perpendicular(inside);
+  SetView(c, cosine, random);
+  return c;
+}
+
+// 1 : 1e3 to 1 : 1e5, or 1e4 to 1e5 of its lengths away.
+PointCase ThinTube(CaseRandom& random, LightShape shape) {
+  PointCase c = OrdinaryTube(random, shape);
+  if (random.Chance(0.3)) c.center = c.position + glm::normalize(c.center - c.position) * (random.Log(1e4, 1e5) * c.half_size.x);
+  c.half_size.y = c.half_size.x * random.Log(1e-5, 1e-3);
   return c;
 }
 
@@ -510,6 +554,11 @@ const std::vector<StressFamily>& StressFamilies() {
       {"edge_on", "the light edge-on but for 1e-7 to 1e-2 rad", true, kFlat, EdgeOn},
       {"zero_vector", "a vector form factor of 0, or without a part along the normal", true, kAll,
        ZeroVector},
+      {"tube", "tubes of 0.4 to 4 m, 1 to 4 m away", false, kTubes, OrdinaryTube},
+      {"tube_crossing", "a tube across the horizon", false, kTubes, CrossingTube},
+      {"tube_beside", "the point beside the wall of a tube, prolonged, or inside", true, kTubes, AtTube},
+      {"tube_along", "a tube seen 1e-4 to 0.1 rad beside its axis", true, kTubes, AlongTube},
+      {"tube_thin", "a tube of 1 : 1e3 to 1 : 1e5, also from afar", false, kTubes, ThinTube},
   };
   return families;
 }
@@ -569,9 +618,10 @@ PointCase ParseCase(std::string_view line) {
     const std::string key = word.substr(0, equals), value = word.substr(equals + 1);
     const auto field = std::ranges::find_if(kFields, [&](const Field& f) { return key == f.name; });
     if (key == "shape") {
-      const auto shape = std::ranges::find_if(kAll, [&](LightShape s) { return value == Name(s); });
-      if (shape == kAll.end()) {
-        throw InputError(fmt::format("--case: shape={}; expected rectangle, disk or sphere", value));
+      constexpr std::array kKnown{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere, LightShape::kTube};
+      const auto shape = std::ranges::find_if(kKnown, [&](LightShape s) { return value == Name(s); });
+      if (shape == kKnown.end()) {
+        throw InputError(fmt::format("--case: shape={}; expected rectangle, disk, sphere or tube", value));
       }
       c.shape = *shape;
     } else if (key == "half_size") {
@@ -618,6 +668,9 @@ std::string CaseScene(const PointCase& c, const std::string& about) {
       std::atan2(normal.y, normal.x) * degrees);
   text += fmt::format("\n[[light]]\nshape = \"{}\"\nposition = {}\nradiance = {:.9g}\n", Name(c.shape),
                       triple(c.center), radiance);
+  if (c.shape == LightShape::kTube) {
+    return text + fmt::format("axis = {}\nlength = {:.9g}\nradius = {:.9g}\n", triple(c.axis_x), 2.0 * length(c.half_size.x), length(c.half_size.y));
+  }
   if (c.shape != LightShape::kSphere) {
     text += fmt::format("normal = {}\nup = {}\n", triple(c.light_normal), triple(c.axis_y));
   }

@@ -40,6 +40,7 @@ std::string WithArticle(LightShape shape) { return fmt::format("{} {}", shape ==
 double BoundingRadius(const Light& light) {
   switch (light.shape) {
     case LightShape::kRectangle:
+    case LightShape::kTube:
       return std::hypot(light.half_size.x, light.half_size.y);
     case LightShape::kDisk:
     case LightShape::kSphere:
@@ -60,6 +61,8 @@ double Reach(const Light& light, const glm::dvec3& direction) {
   switch (light.shape) {
     case LightShape::kRectangle:
       return std::abs(x) + std::abs(y);
+    case LightShape::kTube:
+      return std::abs(x) + light.half_size.y * glm::length(glm::cross(direction, light.axis_x));
     case LightShape::kPolygon: {
       double reach = 0.0;
       const glm::dvec2 slope(glm::dot(direction, light.axis_x), glm::dot(direction, light.axis_y));
@@ -75,6 +78,9 @@ double Reach(const Light& light, const glm::dvec3& direction) {
   return std::numeric_limits<double>::infinity();
 }
 
+// Whether there are points that see nothing of it.
+bool HasBack(LightShape shape) { return shape != LightShape::kSphere; }
+
 bool IsPureMetal(const Material& material) {
   return material.metalness >= 1.0f && !material.metallic_roughness_texture;
 }
@@ -84,10 +90,10 @@ bool IsGrey(const glm::dvec3& color) { return color.x == color.y && color.y == c
 // Reasons for which an effect of the geometry is on; empty ones are proven off.
 struct GeometryNeeds {
   std::optional<std::string> two_sided, behind, turned_away, horizon, proxy_horizon;
-  bool any_two_sided = false, any_flat = false;  // among the lights: without them two_sided and behind are off anyway
+  bool any_two_sided = false, any_back = false;  // among the lights: without them two_sided and behind are off anyway
 
   // Whether nothing is left to find.
-  bool All() const { return (two_sided || !any_two_sided) && (behind || !any_flat) && turned_away && horizon && proxy_horizon; }
+  bool All() const { return (two_sided || !any_two_sided) && (behind || !any_back) && turned_away && horizon && proxy_horizon; }
 };
 
 // The corners of a triangle, its normals anywhere between the corners' own.
@@ -128,6 +134,23 @@ Range Heights(const Patch& patch, const glm::dvec3& center, const ReachOf& reach
   return heights;
 }
 
+// Between which heights over the light's plane the patch lies. Of a tube: over a plane along it that touches it, which all of the patch
+// lies above where it lies above any; below one it may still lie above another.
+Range Before(const Light& light, const Patch& patch) {
+  glm::dvec3 normal = light.normal;
+  double radius = 0.0;
+  Range before;
+  if (light.shape == LightShape::kTube) {
+    const glm::dvec3 middle = (patch.position[0] + patch.position[1] + patch.position[2]) / 3.0 - light.center;
+    const glm::dvec3 across = middle - light.axis_x * glm::dot(middle, light.axis_x);
+    normal = across / std::max(glm::length(across), 1e-300);
+    radius = light.half_size.y;
+    before.high = std::numeric_limits<double>::infinity();
+  }
+  for (const glm::dvec3& position : patch.position) before.Include(glm::dot(normal, position - light.center) - radius);
+  return before;
+}
+
 class Analysis {
  public:
   explicit Analysis(const Scene& scene) : scene_(scene), lights_(EmittingLights(scene)) {
@@ -159,8 +182,8 @@ class Analysis {
   }
 
   Verdict Behind() {
-    if (std::none_of(lights_.begin(), lights_.end(), [](const Light& light) { return IsFlat(light.shape); })) return {false, "spheres have no back"};
-    return OfGeometry(&GeometryNeeds::behind, "every surface lies before the lit side of every light");
+    if (std::none_of(lights_.begin(), lights_.end(), [](const Light& light) { return HasBack(light.shape); })) return {false, "spheres have no back"};
+    return OfGeometry(&GeometryNeeds::behind, "every surface lies before the lit side of every light, and beside every tube");
   }
 
   Verdict TurnedAway() {
@@ -273,7 +296,7 @@ class Analysis {
   GeometryNeeds LookAtGeometry() const {
     GeometryNeeds needs;
     for (const Light& light : lights_) {
-      needs.any_flat = needs.any_flat || IsFlat(light.shape);
+      needs.any_back = needs.any_back || HasBack(light.shape);
       needs.any_two_sided = needs.any_two_sided || (IsFlat(light.shape) && light.two_sided);
     }
     for (const Mesh& mesh : scene_.meshes) {
@@ -314,11 +337,12 @@ class Analysis {
       const Light& light = lights_[l];
       const double radius = BoundingRadius(light);
       const double margin = kMargin * (patch.size + glm::length(light.center) + radius);
-      if (IsFlat(light.shape)) {
-        Range before;
-        for (const glm::dvec3& position : patch.position) before.Include(glm::dot(light.normal, position - light.center));
+      if (HasBack(light.shape)) {
+        const Range before = Before(light, patch);
         if (!(before.low > margin)) {
-          const auto behind = [&] { return fmt::format("some of material \"{}\" lies behind {}", material.name, Called(light, l)); };
+          const auto behind = [&] {
+            return fmt::format("some of material \"{}\" lies {} {}", material.name, IsFlat(light.shape) ? "behind" : "within the width of", Called(light, l));
+          };
           because(needs.behind, behind);
           if (light.two_sided) because(needs.two_sided, [&] { return behind() + ", which is lit on both sides"; });
         }
@@ -359,6 +383,7 @@ constexpr Rule kRules[] = {
     {"sphere", [](Analysis& scene) { return scene.Shape(LightShape::kSphere); }},
     {"polygon", [](Analysis& scene) { return scene.Shape(LightShape::kPolygon); }},
     {"ellipse", [](Analysis& scene) { return scene.Shape(LightShape::kEllipse); }},
+    {"tube", [](Analysis& scene) { return scene.Shape(LightShape::kTube); }},
     {"two_sided", [](Analysis& scene) { return scene.TwoSided(); }},
     {"behind", [](Analysis& scene) { return scene.Behind(); }},
     {"turned_away", [](Analysis& scene) { return scene.TurnedAway(); }},

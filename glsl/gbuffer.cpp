@@ -75,6 +75,28 @@ void AddSphere(const Light& light, Mesh& mesh) {
   }
 }
 
+// The strips of a tube's wall whose outside, or whose inside, faces the camera.
+Mesh TubeWall(const Light& light, const glm::dvec3& camera, bool outside) {
+  Mesh mesh;
+  const auto normal_at = [&](double segment) {
+    const double angle = 2.0 * std::numbers::pi * segment / kSphereSegments;
+    return std::cos(angle) * light.axis_y + std::sin(angle) * light.normal;
+  };
+  for (int segment = 0; segment < kSphereSegments; ++segment) {
+    const glm::dvec3 rim = light.center + light.half_size.y * normal_at(segment);
+    if ((glm::dot(normal_at(segment + 0.5), camera - rim) > 0.0) != outside) continue;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const int side : {segment, segment + 1}) {
+      for (const double end : {-1.0, 1.0}) {
+        const glm::dvec3 place = light.center + end * light.half_size.x * light.axis_x + light.half_size.y * normal_at(side);
+        mesh.vertices.push_back({glm::vec3(place), glm::vec3(normal_at(side)), glm::vec4(0.0f), glm::vec2(0.0f)});
+      }
+    }
+    mesh.indices.insert(mesh.indices.end(), {first, first + 2, first + 3, first, first + 3, first + 1});
+  }
+  return mesh;
+}
+
 Mesh EmitterMesh(const Light& light) {
   Mesh mesh;
   const auto add = [&](double x, double y) {
@@ -102,6 +124,8 @@ Mesh EmitterMesh(const Light& light) {
       }
       for (std::uint32_t i = 1; i + 1 < kDiskSegments; ++i)
         mesh.indices.insert(mesh.indices.end(), {0, i, i + 1});
+      break;
+    case LightShape::kTube:  // TubeWall's
       break;
     case LightShape::kSphere:
       AddSphere(light, mesh);
@@ -290,7 +314,14 @@ GBuffer::Geometry GBuffer::Gather(const Scene& scene, const glm::dvec3& camera) 
     const bool lit = light.two_sided || !IsFlat(light.shape) ||
                      glm::dot(light.normal, camera - light.center) > 0.0;
     const float number = 2.0f + static_cast<float>(i);
-    geometry.Add(EmitterMesh(light), {}, lit ? number : -number);
+    if (light.shape != LightShape::kTube) {
+      geometry.Add(EmitterMesh(light), {}, lit ? number : -number);
+      continue;
+    }
+    for (const bool outside : {true, false}) {  // from within none of the outside is seen
+      const Mesh wall = TubeWall(light, camera, outside);
+      if (!wall.indices.empty()) geometry.Add(wall, {}, outside ? number : -number);
+    }
   }
   if (!geometry.apertures.empty()) geometry.apertures.resize(geometry.vertices.size());  // emitters have none
   return geometry;

@@ -23,6 +23,8 @@ float ShapeNumber(LightShape shape) {  // SHAPE_* of glsl/surface.glsl
       return 3.0f;
     case LightShape::kEllipse:
       return 1.0f;  // the shading text asks EFFECT_ELLIPSE where it matters
+    case LightShape::kTube:
+      return 4.0f;
   }
   return 0.0f;
 }
@@ -55,8 +57,9 @@ std::vector<glm::vec4> LightBlockRows(const std::vector<Light>& lights) {
   rows.reserve(lights.size() * kLightRows);
   for (const Light& light : lights) {
     const glm::dvec2 half = light.half_size;
-    const double area =
-        light.shape == LightShape::kSphere ? std::numbers::pi * half.x * half.x : light.Area() / (light.two_sided ? 2.0 : 1.0);
+    const double area = light.shape == LightShape::kSphere ? std::numbers::pi * half.x * half.x
+                        : light.shape == LightShape::kTube ? 4.0 * half.x * half.y
+                                                           : light.Area() / (light.two_sided ? 2.0 : 1.0);
     rows.emplace_back(light.center, ShapeNumber(light.shape));
     rows.emplace_back(light.normal, light.two_sided ? 1.0f : 0.0f);
     rows.emplace_back(light.axis_x, half.x);

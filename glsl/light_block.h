@@ -28,12 +28,12 @@ struct ShownTexture {
 std::vector<ShownTexture> ShownTextures(const std::vector<Light>& lights);
 
 // kLightRows rows per light, as glsl/lights.glsl reads them:
-//   0 centre (m, world), shape (0 rectangle, 1 disk or ellipse, 2 sphere, 3 polygon)   4 half axis A = axis_x · half_size.x (m),
+//   0 centre (m, world), shape (0 rectangle, 1 disk or ellipse, 2 sphere, 3 polygon, 4 tube)   4 half axis A = axis_x · half_size.x (m),
 //   area (m²) 1 normal, 1 if two-sided                                      5 half axis B = axis_y ·
 //   half_size.y (m), corners of a polygon or texels across 2 axis_x, half_size.x (m)             6 radiance, layer of the texture
 //   3 axis_y, half_size.y (m)                           7 half_size.x², half_size.y², 2 · x · y (m²), texels down
 // Without a texture its three are 0.
-// The area is one side's; of a sphere its cross-section πR².
+// The area is one side's; of a sphere its cross-section πR², of a tube 2R · length, as it is seen from the side.
 // Throws InputError where there are more than kMaxLights.
 std::vector<glm::vec4> LightBlockRows(const std::vector<Light>& lights);
 

@@ -1,12 +1,15 @@
 #pragma once
 // The cap of the sphere of directions that stands for a light: a sphere's own; of a flat light the cap of its
-// solid angle about the direction to their centre.
+// solid angle about the direction to its centre; a tube is the strip that the point sees of it.
 #include "solid_angle.glsl"
 #if EFFECT_ELLIPSE
 #include "elliptic_cone.glsl"
 #endif
 #include "spherical_cap.glsl"
 #include "surface.glsl"
+#if EFFECT_TUBE
+#include "tube_view.glsl"
+#endif
 
 #if EFFECT_POLYGON
 // Of a polygon, sr: triangles about corner 0 as in RectangleSolidAngle, their angles added as complex numbers.
@@ -66,20 +69,23 @@ float RoundSolidAngle(vec3 point, vec2 half_size) {
 
 // Seen from `position` (m, world), off the light; fallback_axis (unit) where the position is its centre.
 Cap LightCap(Light light, vec3 position, vec3 fallback_axis) {
+#if EFFECT_TUBE
+  if (light.shape == SHAPE_TUBE) light = StripOfTube(light, ViewTube(light, position));
+#endif
   vec3 to_center = light.center - position;
   Cap cap;
 #if EFFECT_SPHERE
-#if EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON
+#if EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON || EFFECT_TUBE
   if (light.shape == SHAPE_SPHERE)
 #endif
   {
     cap = SphereCap(to_center, light.half_size.x, fallback_axis);
   }
-#if EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON
+#if EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON || EFFECT_TUBE
   else
 #endif
 #endif
-#if EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON
+#if EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON || EFFECT_TUBE
   {
     vec3 point = -vec3(dot(to_center, light.axis_x), dot(to_center, light.axis_y), dot(to_center, light.normal));
     float solid_angle = 0.0;
@@ -89,7 +95,7 @@ Cap LightCap(Light light, vec3 position, vec3 fallback_axis) {
     } else
 #endif
     {
-#if EFFECT_RECTANGLE && EFFECT_DISK
+#if (EFFECT_RECTANGLE || EFFECT_TUBE) && EFFECT_DISK
       if (light.shape == SHAPE_DISK) {
         solid_angle = RoundSolidAngle(point, light.half_size);
       } else {
@@ -97,7 +103,7 @@ Cap LightCap(Light light, vec3 position, vec3 fallback_axis) {
       }
 #elif EFFECT_DISK
       solid_angle = RoundSolidAngle(point, light.half_size);
-#elif EFFECT_RECTANGLE
+#elif EFFECT_RECTANGLE || EFFECT_TUBE
       solid_angle = RectangleSolidAngle(point, light.half_size);
 #endif
     }

@@ -11,16 +11,18 @@ Light LoadLight(int i) {
   vec4 row4 = LightRow(i, 4);
   Light light;
   // Where the scene has one shape only it is a constant, and branches on it vanish.
-#if EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_SPHERE && !EFFECT_POLYGON
+#if EFFECT_RECTANGLE + EFFECT_DISK + EFFECT_SPHERE + EFFECT_POLYGON + EFFECT_TUBE != 1
+  light.shape = int(row0.w);
+#elif EFFECT_RECTANGLE
   light.shape = SHAPE_RECTANGLE;
-#elif EFFECT_DISK && !EFFECT_RECTANGLE && !EFFECT_SPHERE && !EFFECT_POLYGON
+#elif EFFECT_DISK
   light.shape = SHAPE_DISK;
-#elif EFFECT_SPHERE && !EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_POLYGON
+#elif EFFECT_SPHERE
   light.shape = SHAPE_SPHERE;
-#elif EFFECT_POLYGON && !EFFECT_RECTANGLE && !EFFECT_DISK && !EFFECT_SPHERE
+#elif EFFECT_POLYGON
   light.shape = SHAPE_POLYGON;
 #else
-  light.shape = int(row0.w);
+  light.shape = SHAPE_TUBE;
 #endif
 #if EFFECT_TWO_SIDED
   light.two_sided = row1.w != 0.0;
@@ -54,12 +56,17 @@ Light LoadLight(int i) {
 }
 
 // Turns a two-sided light's frame so that its lit side faces the point, right-handed as before. False where no lit side
-// does: the point is in the plane or behind it. A sphere faces everything, and so does every light where nothing lies behind one.
+// does: the point is in the plane or behind it. A sphere or a tube faces everything, and so does every light where nothing lies behind one.
 // A light without an area is none, and one that is thinner than 1e-7 of its length neither: no float tells its sides apart.
 bool FaceLight(inout Light light, vec3 position) {
   if (light.area <= max(1e-7 * (light.products.x + light.products.y), 1e-30)) return false;
 #if EFFECT_BEHIND && (EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON)
-  if (light.shape != SHAPE_SPHERE) {
+#if EFFECT_TUBE
+  if (light.shape != SHAPE_SPHERE && light.shape != SHAPE_TUBE)
+#else
+  if (light.shape != SHAPE_SPHERE)
+#endif
+  {
     float height = dot(light.normal, position - light.center);
 #if EFFECT_TWO_SIDED
     if (light.two_sided && height < 0.0) {

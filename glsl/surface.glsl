@@ -29,8 +29,8 @@ struct Light {
   vec3 axis_y;        // unit
   vec3 half_axis_x;   // m: A = axis_x · half_size.x
   vec3 half_axis_y;   // m: B = axis_y · half_size.y
-  vec2 half_size;     // m; disk and sphere: the radius, twice; polygon: how far its corners reach
-  float area;         // m², of one side; sphere: πR², its cross-section
+  vec2 half_size;     // m; disk and sphere: the radius, twice; polygon: how far its corners reach; tube: half its length, its radius
+  float area;         // m², of one side; sphere: πR², its cross-section; tube: 2R · length, seen from the side
   vec3 radiance;      // W/(m² sr) or cd/m², linear sRGB
 #if EFFECT_POLYGON
   int index;          // in the light block, whose corners LightCorner gives
@@ -53,6 +53,7 @@ struct Radiance {
 #define SHAPE_DISK 1  // and ellipses
 #define SHAPE_SPHERE 2
 #define SHAPE_POLYGON 3
+#define SHAPE_TUBE 4
 
 // The GGX peak 1/(π α²) is 3e7 there: safe in float32.
 const float kMinAlpha = 1e-4;

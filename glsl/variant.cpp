@@ -100,6 +100,8 @@ const char* PluralName(LightShape shape) {
       return "polygons";
     case LightShape::kEllipse:
       return "ellipses";
+    case LightShape::kTube:
+      return "tubes";
   }
   return "";
 }

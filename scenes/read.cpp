@@ -676,6 +676,7 @@ class SceneReader {
         return "size";
       case LightShape::kDisk:
       case LightShape::kSphere:
+      case LightShape::kTube:
         return "radius";
       case LightShape::kPolygon:
         return "corners";
@@ -692,6 +693,7 @@ class SceneReader {
     Light light;
     light.shape = *std::find_if(std::begin(kLightShapes), std::end(kLightShapes), [&](LightShape s) { return shape == Name(s); });
     known.emplace_back(SizeKey(light.shape));
+    if (light.shape == LightShape::kTube) known.insert(known.end(), {"length", "axis", "rotation"});
     if (IsFlat(light.shape)) known.insert(known.end(), {"target", "normal", "rotation", "up", "two_sided"});
     fields.Allow(known);
     light.name = UniqueName(fields, light_names_, fmt::format("light {}", scene_.lights.size() + 1));
@@ -700,6 +702,7 @@ class SceneReader {
     light.two_sided = fields.Bool("two_sided", false);
     if (light.shape != LightShape::kPolygon) ReadLightSize(fields, light);
     if (IsFlat(light.shape)) ReadLightAxes(fields, light);
+    if (light.shape == LightShape::kTube) ReadTube(fields, light);
     if (light.shape == LightShape::kPolygon) ReadCorners(fields, light);
     ReadLightTexture(fields, light);
     ReadEmission(fields, light);
@@ -716,10 +719,36 @@ class SceneReader {
     // Zero gets a sentence of its own: it is what people try for a point light.
     const Quantity from_zero{0.0, kLength.max, kLength.expected};
     const glm::dvec2 size = two ? scale * fields.Numbers<2>(node, key, from_zero) : glm::dvec2(fields.Number(node, key, from_zero));
-    if (size.x == 0.0 || size.y == 0.0) {
-      fields.Fail(node, fmt::format("{} has no area; expected {}", fields.title(), kLength.expected));
-    }
+    if (size.x == 0.0 || size.y == 0.0) FailForArea(fields, node);
     light.half_size = two ? scale * fields.Numbers<2>(node, key, kLength) : glm::dvec2(fields.Number(node, key, kLength));
+  }
+
+  [[noreturn]] static void FailForArea(const Fields& fields, const toml::node& node) {
+    fields.Fail(node, fmt::format("{} has no area; expected {}", fields.title(), kLength.expected));
+  }
+
+  // A tube's length, and where it runs.
+  static void ReadTube(const Fields& fields, Light& light) {
+    const toml::node& node = fields.Require("length", kLength.expected);
+    if (fields.Number(node, "length", {0.0, kLength.max, kLength.expected}) == 0.0) FailForArea(fields, node);
+    light.half_size.x = 0.5 * fields.Number(node, "length", kLength);
+    const toml::node* axis = fields.Find("axis");
+    const toml::node* rotation = fields.Find("rotation");
+    if (!axis == !rotation) {
+      const std::string what =
+          fmt::format("{} has {} 'axis' and 'rotation'; expected exactly one", fields.title(), axis ? "both" : "neither of");
+      axis ? fields.Fail(*axis, what) : fields.Fail(what);
+    }
+    if (rotation) {
+      const glm::dmat3 turned = RotationFromDegrees(fields.Numbers<3>(*rotation, "rotation", kAngle));
+      light.axis_x = turned[0];
+      light.axis_y = turned[1];
+      light.normal = turned[2];
+      return;
+    }
+    const glm::dvec3 along = fields.Numbers<3>(*axis, "axis", kDirection);
+    if (!(glm::length(along) > 0.0)) fields.Fail(*axis, "the tube's axis is zero; expected a direction");
+    LayAlong(light, along);
   }
 
   // After the axes: the corners lie along them.

@@ -46,6 +46,8 @@ const char* Name(LightShape shape) {
       return "polygon";
     case LightShape::kEllipse:
       return "ellipse";
+    case LightShape::kTube:
+      return "tube";
   }
   return "";
 }
@@ -129,6 +131,13 @@ void SetCorners(Light& light, std::vector<glm::dvec2> corners) {
   light.corners = std::move(corners);
 }
 
+void LayAlong(Light& light, const glm::dvec3& direction) {
+  light.axis_x = glm::normalize(direction);
+  const glm::dvec3 other = std::abs(light.axis_x.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
+  light.axis_y = glm::normalize(glm::cross(other, light.axis_x));
+  light.normal = glm::cross(light.axis_x, light.axis_y);
+}
+
 double Light::Area() const {
   const double pi = glm::pi<double>();
   const double sides = two_sided ? 2.0 : 1.0;
@@ -138,6 +147,8 @@ double Light::Area() const {
     case LightShape::kDisk:
     case LightShape::kEllipse:
       return sides * pi * half_size.x * half_size.y;
+    case LightShape::kTube:
+      return 4.0 * pi * half_size.x * half_size.y;
     case LightShape::kPolygon:
       return sides * 0.5 * TwiceArea(corners);
     case LightShape::kSphere:

@@ -15,15 +15,15 @@ namespace arealab {
 
 enum class Units { kRadiometric, kPhotometric };  // of radiance: W/(m² sr), or cd/m² (nits)
 
-enum class LightShape { kRectangle, kDisk, kSphere, kPolygon, kEllipse };
+enum class LightShape { kRectangle, kDisk, kSphere, kPolygon, kEllipse, kTube };
 constexpr LightShape kLightShapes[] = {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere, LightShape::kPolygon,
-                                       LightShape::kEllipse};
+                                       LightShape::kEllipse,   LightShape::kTube};
 
-// "rectangle", "disk", "sphere", "polygon", "ellipse": as written in scene files, technique headers and results.
+// "rectangle", "disk", "sphere", "polygon", "ellipse", "tube": as written in scene files, technique headers and results.
 const char* Name(LightShape shape);
 
 // Lies in a plane and has a lit side.
-constexpr bool IsFlat(LightShape shape) { return shape != LightShape::kSphere; }
+constexpr bool IsFlat(LightShape shape) { return shape != LightShape::kSphere && shape != LightShape::kTube; }
 
 constexpr std::size_t kMostCorners = 8;  // of a polygon
 
@@ -46,7 +46,8 @@ struct Image {
 };
 
 // An emitter of constant radiance, or of radiance × its texture. axis_x, axis_y, normal are unit and right-handed: normal = axis_x ×
-// axis_y, and the lit side is the one that normal points to (a sphere emits everywhere and ignores the axes).
+// axis_y, and the lit side is the one that normal points to (a sphere emits everywhere and ignores the axes). A tube is the outside of
+// a cylinder along axis_x: its ends are open, and its inside is dark.
 struct Light {
   std::string name;
   LightShape shape = LightShape::kRectangle;
@@ -56,7 +57,7 @@ struct Light {
   glm::dvec3 normal{0.0, 0.0, 1.0};
   glm::dvec2 half_size{
       0.5};  // m: half width and half height along the axes; disk and sphere: the radius, twice; ellipse: its half axes;
-             // polygon: how far its corners reach along the axes
+             // polygon: how far its corners reach along the axes; tube: half its length, its radius
   // Polygon: m, from the centre along axis_x and axis_y, counter-clockwise seen from the lit side; the centre is its centroid.
   std::vector<glm::dvec2> corners;
   glm::dvec3 radiance{1.0};  // in the scene's unit, linear sRGB primaries
@@ -64,9 +65,12 @@ struct Light {
   std::shared_ptr<const Image> texture;  // rectangles only, see scenes/light_texture.h; none: the radiance is everywhere
   std::string texture_path;              // as the scene file has it
 
-  double Area() const;  // m², of the lit side or sides together; sphere: 4πR²
+  double Area() const;  // m², of the lit side or sides together; sphere: 4πR²; tube: 2πR · length
   double Flux() const;  // mean luminance × π × Area(): W or lm
 };
+
+// Lays a tube along a direction of any length above 0, its other axes about it.
+void LayAlong(Light& light, const glm::dvec3& direction);
 
 // What keeps corners from being a light: too few, too many, equal ones, three in a line, not convex; nothing where they do.
 std::optional<std::string> WhyNoPolygon(const std::vector<glm::dvec2>& corners);

@@ -207,6 +207,8 @@ SizeEntry SizeOf(const Light& light) {
     case LightShape::kDisk:
     case LightShape::kSphere:
       return {"radius", Number(light.half_size.x)};
+    case LightShape::kTube:
+      return {"radius", Number(light.half_size.y)};
     case LightShape::kEllipse:
       return {"radii", Numbers({light.half_size.x, light.half_size.y})};
     case LightShape::kPolygon:
@@ -229,6 +231,21 @@ void WriteTexture(TableText& table, const Light& before, const Light& after) {
   after.texture_path.empty() ? table.Remove("texture") : table.Set("texture", Quoted(after.texture_path));
 }
 
+// What only a tube says.
+void WriteTube(TableText& table, const Light& before, const Light& after) {
+  const bool was_tube = before.shape == LightShape::kTube;
+  if (after.shape != LightShape::kTube) {
+    for (const char* key : {"length", "axis", "rotation"}) {
+      if (was_tube) table.Remove(key);
+    }
+    return;
+  }
+  if (!was_tube || !Close(before.half_size.x, after.half_size.x)) table.Set("length", Number(2.0 * after.half_size.x));
+  if (was_tube && Close(before.axis_x, after.axis_x)) return;
+  if (was_tube) table.Remove("rotation");
+  table.Set("axis", Numbers(after.axis_x));
+}
+
 void WriteLight(TableText& table, const Light& before, const Light& after, Units units) {
   const SizeEntry was = SizeOf(before), is = SizeOf(after);
   // A file's corners need not lie about their centroid, from which the light's do: place and corners are written together.
@@ -247,6 +264,7 @@ void WriteLight(TableText& table, const Light& before, const Light& after, Units
   if (!flat && IsFlat(before.shape)) {
     for (const char* key : {"target", "normal", "rotation", "up", "two_sided"}) table.Remove(key);
   }
+  WriteTube(table, before, after);
   // A light that is moved keeps its axes, so what it faced as a target is a direction from then on.
   const bool turned = reoriented || !IsFlat(before.shape) || (table.Find("target") != nullptr && placed);
   if (flat && turned) WriteAxes(table, after);
@@ -263,6 +281,7 @@ std::string NewLight(const Light& light, Units units) {
     if (!Close(AxisX(light.normal, std::nullopt), light.axis_x)) text += fmt::format("up = {}\n", Numbers(light.axis_y));
     if (light.two_sided) text += "two_sided = true\n";
   }
+  if (light.shape == LightShape::kTube) text += fmt::format("axis = {}\nlength = {}\n", Numbers(light.axis_x), Number(2.0 * light.half_size.x));
   const SizeEntry size = SizeOf(light);
   text += fmt::format("{} = {}\n", size.key, size.text);
   if (light.texture) text += fmt::format("texture = {}\n", Quoted(light.texture_path));
@@ -313,6 +332,7 @@ const Thing* Named(const std::vector<Thing>& things, const std::string& name) {
 bool SameLight(const Light& a, const Light& b) {
   const bool flat = IsFlat(a.shape);
   return a.name == b.name && a.shape == b.shape && a.texture_path == b.texture_path && Close(a.center, b.center) && SameSize(a, b) && glm::distance(a.radiance, b.radiance) <= 10.0 * kDigits * glm::length(b.radiance) &&
+         (a.shape != LightShape::kTube || Close(a.axis_x, b.axis_x)) &&
          (!flat || (a.two_sided == b.two_sided && Close(a.normal, b.normal) && Close(a.axis_x, b.axis_x)));
 }
 

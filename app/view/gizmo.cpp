@@ -50,10 +50,10 @@ std::array<glm::dvec3, 3> Axes(const Light& light, GizmoMode mode) {
 }
 
 // Whether it is scaled along each of its axes by itself.
-bool HasTwoSizes(LightShape shape) { return IsFlat(shape) && shape != LightShape::kDisk; }
+bool HasTwoSizes(LightShape shape) { return shape != LightShape::kDisk && shape != LightShape::kSphere; }
 
 bool Exists(const Light& light, GizmoMode mode, int handle) {
-  if (!IsFlat(light.shape)) return mode == GizmoMode::kMove || (mode == GizmoMode::kScale && handle == kCenter);
+  if (light.shape == LightShape::kSphere) return mode == GizmoMode::kMove || (mode == GizmoMode::kScale && handle == kCenter);
   if (mode == GizmoMode::kTurn) return handle != kCenter;
   if (mode == GizmoMode::kScale) return handle == kCenter || (handle < 2 && HasTwoSizes(light.shape));
   return true;
@@ -74,6 +74,12 @@ std::vector<glm::dvec3> Outline(const Light& light, const Projection& view) {
     case LightShape::kRectangle: {
       const glm::dvec3 c = light.center;
       return {c - x - y, c + x - y, c + x + y, c - x + y, c - x - y};
+    }
+    case LightShape::kTube: {  // its rims, joined along one line
+      std::vector<glm::dvec3> points = Circle(light.center - x, y, light.half_size.y * light.normal);
+      const std::vector<glm::dvec3> other = Circle(light.center + x, y, light.half_size.y * light.normal);
+      points.insert(points.end(), other.begin(), other.end());
+      return points;
     }
     case LightShape::kPolygon: {
       std::vector<glm::dvec3> points;

@@ -28,7 +28,9 @@ std::string Clipping(const Light& light, const glm::dvec3& position, const glm::
     });
     return fmt::format("{} of {} corners above", above, light.corners.size());
   }
-  const double reach = light.shape == LightShape::kSphere ? light.half_size.x : std::hypot(x, y);
+  const double reach = light.shape == LightShape::kSphere ? light.half_size.x
+                       : light.shape == LightShape::kTube ? std::abs(x) + light.half_size.y * glm::length(glm::cross(light.axis_x, normal))
+                                                          : std::hypot(x, y);
   return height > reach ? "wholly above" : height < -reach ? "wholly below" : "cut";
 }
 

@@ -169,6 +169,7 @@ void Reshape(Light& light, LightShape shape) {
     light.half_size = glm::dvec2(std::sqrt(light.half_size.x * light.half_size.y));
   }
   if (!IsFlat(shape)) light.two_sided = false;
+  if (shape == LightShape::kTube) light.half_size.y = std::min(light.half_size.y, 0.1 * light.half_size.x);
   if (shape == LightShape::kPolygon) {  // a hexagon
     std::vector<glm::dvec2> corners;
     for (int i = 0; i < 6; ++i) {
@@ -214,6 +215,18 @@ void LightControls(Session& session) {
       light.half_size = glm::clamp(light.half_size, low, high);
     }
     Tip("Metres, along the light's own two axes.");
+  } else if (light.shape == LightShape::kTube) {
+    glm::dvec3 axis = light.axis_x;
+    Row("Axis", "", "");
+    if (Vector("##axis", axis, 0.01f) && glm::length(axis) > 1e-9) LayAlong(light, axis);
+    Tip("Where the tube runs, a unit vector. R turns the light in the picture.");
+    double length = 2.0 * light.half_size.x;
+    Row("Length", "m", "");
+    if (Scalar("##length", length, 0.01f, 1e-3, 1e5)) light.half_size.x = 0.5 * length;
+    Tip("Metres. The ends are open: only the wall's outside is lit.");
+    Row("Radius", "m", "");
+    Scalar("##radius", light.half_size.y, 0.005f, 1e-3, 1e5);
+    Tip("Metres.");
   } else if (light.shape == LightShape::kPolygon) {
     glm::dvec2 reach = light.half_size;
     const double low = 1e-3, high = 1e5;

@@ -160,7 +160,7 @@ class LawCheck {
 
   // One half of a light, where its halves are lights of its shape.
   static void Halve(PointCase& c, double side) {
-    if (c.shape != LightShape::kRectangle) return;
+    if (c.shape != LightShape::kRectangle && c.shape != LightShape::kTube) return;
     c.half_size.x *= 0.5;
     c.center += side * c.half_size.x * c.axis_x;
   }
@@ -228,11 +228,12 @@ class LawCheck {
     std::vector<Shaded> doubled = plain;
     for (Shaded& s : doubled) s = {2.0 * s.diffuse, 2.0 * s.specular};
     measure("radiance", shade(Changed(cases, [](PointCase& c) { c.radiance = 2.0; })), doubled, true, true);
-    if (std::ranges::count(shapes, LightShape::kRectangle) == 0) return;
+    const std::array halved{LightShape::kRectangle, LightShape::kTube};
+    if (std::ranges::find_first_of(shapes, halved) == shapes.end()) return;
     std::vector<Shaded> sum = shade(Changed(cases, [](PointCase& c) { Halve(c, 1.0); }));
     const std::vector<Shaded> other = shade(Changed(cases, [](PointCase& c) { Halve(c, -1.0); }));
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = {sum[i].diffuse + other[i].diffuse, sum[i].specular + other[i].specular};
-    measure("additive", sum, plain, true, true, LightShape::kRectangle);
+    for (const LightShape shape : halved) measure("additive", sum, plain, true, true, shape);
   }
 
   static glm::dmat3 TurnedFrame() {

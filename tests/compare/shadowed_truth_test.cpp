@@ -346,7 +346,9 @@ TEST(LightSampling, IntegratesWhatHasAClosedForm) {
       MakeLight(LightShape::kSphere, {1, 0.3, 0.3}, {0, 0, 1}, glm::dvec2(0.6)),
       MakeLight(LightShape::kEllipse, {-0.6, 0.5, 0.5}, {0.7, -0.2, -0.6}, {0.8, 0.3}),
       MakeLight(LightShape::kPolygon, {0.4, 1.2, 0.9}, {0.1, -1, -0.4}, {}),
-      MakeLight(LightShape::kPolygon, {0, 1, 0.8}, {0.1, 1, 0.2}, {})};
+      MakeLight(LightShape::kPolygon, {0, 1, 0.8}, {0.1, 1, 0.2}, {}),
+      MakeLight(LightShape::kTube, {0.4, 1, 0.6}, {0.1, -1, -0.4}, {0.8, 0.1}),
+      MakeLight(LightShape::kTube, {0.6, 0.2, 0.3}, {0.4, 0.5, -1}, {0.4, 0.1})};
   lights[3].two_sided = lights[8].two_sided = true;  // their backs
   SetCorners(lights[7], {{-0.5, -0.4}, {0.6, -0.3}, {0.3, 0.7}});
   SetCorners(lights[8], {{0.5, 0.0}, {0.3, 0.5}, {-0.2, 0.6}, {-0.5, 0.1}, {-0.3, -0.4}, {0.1, -0.5}});

@@ -36,7 +36,7 @@ TEST(StressCases, AreALineAndBack) {
 
 TEST(StressCases, WhatIsNoLineIsOneSentence) {
   for (const auto& [line, what] :
-       {std::pair{"shape=cube", "expected rectangle, disk or sphere"},
+       {std::pair{"shape=cube", "expected rectangle, disk, sphere or tube"},
         std::pair{"center=1,2", "expected 3 finite numbers with commas between"},
         std::pair{"roughness=nan", "expected 1 finite number with commas between"},
         std::pair{"colour=1", "unknown colour"}, std::pair{"nothing", "expected NAME=VALUE"}}) {

@@ -47,13 +47,14 @@ inline PointCase RandomPoint(PointRandom& random, LightShape shape) {
   c.half_size = {random(0.2, 1.0), random(0.2, 1.0)};
   if (shape == LightShape::kDisk || shape == LightShape::kSphere) c.half_size.y = c.half_size.x;
   if (shape == LightShape::kSphere) c.half_size *= 0.9;  // the point stays outside
+  if (shape == LightShape::kTube) c.half_size.y *= 0.2;
   return c.Rounded();
 }
 
 // Points at which a careless formula divides 0 by 0 or overflows, for every shape.
 inline std::vector<PointCase> HardPoints() {
   std::vector<PointCase> cases;
-  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere}) {
+  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere, LightShape::kTube}) {
     for (const double roughness : {0.0, 1e-3, 0.3, 1.0}) {
       for (const double n_dot_v : {1.0, 0.6, 1e-3}) {
         for (const double size : {1e-4, 1.0, 1e4}) {
@@ -65,6 +66,7 @@ inline std::vector<PointCase> HardPoints() {
               c.shape = shape;
               c.roughness = roughness;
               c.half_size = glm::dvec2(size);
+              if (shape == LightShape::kTube) c.half_size.y *= 0.1;
               c.to_view = {std::sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v};
               c.center = {0.0, 0.0, distance};
               if (place == 1) c.center = {distance, 0.0, 0.0};

@@ -27,6 +27,7 @@ EffectDefines AllOn(const Technique& technique) {
     if (name == "EFFECT_DISK") value = does(LightShape::kDisk);
     if (name == "EFFECT_SPHERE") value = does(LightShape::kSphere);
     if (name == "EFFECT_POLYGON") value = does(LightShape::kPolygon);
+    if (name == "EFFECT_TUBE") value = does(LightShape::kTube);
     if (name == "EFFECT_ELLIPSE") value = does(LightShape::kEllipse);
   }
   return effects;

@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongHeader{"[\"rectangle\", \"sphere\"]", "[]",
                     "5: shapes is empty; expected rectangle, disk, sphere"},
         WrongHeader{"\"sphere\"", "\"spere\"",
-                    "5: unknown name \"spere\" in shapes; expected rectangle, disk, sphere, polygon, ellipse (did you mean "
+                    "5: unknown name \"spere\" in shapes; expected rectangle, disk, sphere, polygon, ellipse, tube (did you mean "
                     "\"sphere\"?)"},
         WrongHeader{"\"sphere\"", "\"rectangle\"", "5: \"rectangle\" stands twice in shapes"},
         WrongHeader{"\"sphere\"", "3", "5: shapes is not a string"},  //

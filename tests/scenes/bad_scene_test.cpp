@@ -44,6 +44,7 @@ const std::string kRectangle =
     "shape = \"rectangle\"\nposition = [0.0, 0.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
 const std::string kEllipse = "shape = \"ellipse\"\nposition = [0, 0, 1]\nnormal = [0, 0, -1]\n";
 const std::string kPolygon = "shape = \"polygon\"\nposition = [0, 0, 1]\nnormal = [0, 0, -1]\n";
+const std::string kTube = "shape = \"tube\"\nposition = [0, 0, 1]\n";
 const std::string kCornersExpected = "[[x, y], …], the 3 to 8 corners of a convex outline in metres, no three in a line";
 const std::string kSized = kRectangle + "size = [1.0, 0.5]\n";
 
@@ -323,6 +324,27 @@ std::vector<BadScene> BadScenes() {
       {"EllipseHasNoRadius", Light(kEllipse + "radius = 1.0 #HERE\nradiance = 1\n"),
        "unknown key 'radius' in [[light]] 'lamp'; expected one of: name, shape, position, color, radiance, flux, luminance, luminous_flux, texture, "
        "radii, target, normal, rotation, up, two_sided"},
+      {"TubeZeroRadius", Light(kTube + "axis = [1, 0, 0]\nlength = 1\nradius = 0 #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp' has no area; expected a positive length in metres, 1e-6 to 1e7"},
+      {"TubeZeroLength", Light(kTube + "axis = [1, 0, 0]\nradius = 1\nlength = 0 #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp' has no area; expected a positive length in metres, 1e-6 to 1e7"},
+      {"TubeNegativeLength", Light(kTube + "axis = [1, 0, 0]\nradius = 1\nlength = -2 #HERE\nradiance = 1\n"),
+       "'length' in [[light]] 'lamp' is -2; expected a positive length in metres, 1e-6 to 1e7"},
+      {"TubeNanLength", Light(kTube + "axis = [1, 0, 0]\nradius = 1\nlength = nan #HERE\nradiance = 1\n"),
+       "'length' in [[light]] 'lamp' is nan, not a finite number; expected a positive length in metres, 1e-6 to 1e7"},
+      {"TubeLengthMissing", kCamera + kMaterial + kSurface + "[[light]] #HERE\n" + kTube + "axis = [1, 0, 0]\nradius = 1\nradiance = 1\n",
+       "[[light]] has no 'length'; expected a positive length in metres, 1e-6 to 1e7"},
+      {"TubeZeroAxis", Light(kTube + "radius = 1\nlength = 2\naxis = [0, 0, 0] #HERE\nradiance = 1\n"),
+       "the tube's axis is zero; expected a direction"},
+      {"TubeNoAxis", kCamera + kMaterial + kSurface + "[[light]] #HERE\n" + kTube + "length = 2\nradius = 1\nradiance = 1\n",
+       "[[light]] has neither of 'axis' and 'rotation'; expected exactly one"},
+      {"TubeAxisAndRotation", Light(kTube + "radius = 1\nlength = 2\nrotation = [0, 0, 9]\naxis = [1, 0, 0] #HERE\nradiance = 1\n"),
+       "[[light]] 'lamp' has both 'axis' and 'rotation'; expected exactly one"},
+      {"TubeTwoSided", Light(kTube + "radius = 1\nlength = 2\naxis = [1, 0, 0]\ntwo_sided = true #HERE\nradiance = 1\n"),
+       "unknown key 'two_sided' in [[light]] 'lamp'; expected one of: name, shape, position, color, radiance, flux, luminance, luminous_flux, texture, "
+       "radius, length, axis, rotation"},
+      {"TubeTexture", Light(kTube + "radius = 1\nlength = 2\naxis = [1, 0, 0]\ntexture = \"a.png\" #HERE\nradiance = 1\n"),
+       "'texture' in [[light]] 'lamp' stands on a tube; expected a rectangle"},
       {"PolygonCornersMissing",
        kCamera + kMaterial + kSurface + "[[light]] #HERE\n" + kPolygon + "radiance = 1\n",
        "[[light]] has no 'corners'; expected " + kCornersExpected},

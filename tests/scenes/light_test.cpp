@@ -32,6 +32,7 @@ const std::string kRectangle = "shape = \"rectangle\"\nposition = [1.0, 2.0, 3.0
 const std::string kDisk = "shape = \"disk\"\nposition = [1.0, 2.0, 3.0]\nradius = 0.25\n";
 const std::string kSphere = "shape = \"sphere\"\nposition = [1.0, 2.0, 3.0]\nradius = 0.25\n";
 const std::string kEllipse = "shape = \"ellipse\"\nposition = [1.0, 2.0, 3.0]\nradii = [0.5, 0.25]\n";
+const std::string kTube = "shape = \"tube\"\nposition = [1.0, 2.0, 3.0]\nlength = 4.0\nradius = 0.25\n";
 // A right triangle of 3 m² whose centroid is at (1, 2/3).
 const std::string kPolygon = "shape = \"polygon\"\nposition = [1.0, 2.0, 3.0]\ncorners = [[0.0, 0.0], [3.0, 0.0], [0.0, 2.0]]\n";
 const std::string kAimed = "target = [0.0, 0.0, 0.0]\n";
@@ -48,11 +49,13 @@ TEST_F(LightTest, AreaAndFluxOfUnitRadianceAreTheClosedForms) {
   EXPECT_NEAR(Read(kPolygon + kAimed + unit + both).Flux(), kPi * 6.0, 1e-14);
   EXPECT_NEAR(Read(kSphere + unit).Flux(), 4.0 * kPi * kPi * 0.0625, 1e-14);
   EXPECT_NEAR(Read(kSphere + unit).Area(), 4.0 * kPi * 0.0625, 1e-14);
+  EXPECT_NEAR(Read(kTube + "axis = [0.0, 2.0, 0.0]\n" + unit).Flux(), 2.0 * kPi * kPi, 1e-13);
 }
 
 TEST_F(LightTest, FluxComesBackThroughRadiance) {
   for (const std::string& shape : {kRectangle + kAimed, kRectangle + kAimed + "two_sided = true\n",
-                                   kDisk + kAimed, kDisk + kAimed + "two_sided = true\n", kSphere, kEllipse + kAimed, kPolygon + kAimed}) {
+                                   kDisk + kAimed, kDisk + kAimed + "two_sided = true\n", kSphere, kEllipse + kAimed, kPolygon + kAimed,
+                                   kTube + "axis = [1.0, 1.0, 0.0]\n"}) {
     for (const std::string color : {"", "color = [1.0, 0.5, 0.1]\n", "color = [0.0, 0.0, 7.0]\n"}) {
       EXPECT_NEAR(Read(shape + color + "flux = 123.0\n").Flux(), 123.0, 1e-11);
       EXPECT_NEAR(Read(shape + color + "luminous_flux = 800.0\n", "photometric").Flux(), 800.0, 1e-10);
