@@ -4,9 +4,15 @@
 #include "directions.glsl"
 #include "elliptic_cone.glsl"
 #include "polar_rule.glsl"
+#if EFFECT_TUBE
+#include "tube_view.glsl"
+#endif
 
-// Of a convex polygon, one more than the light's own where the horizon cuts it, and one to spare.
-#if EFFECT_POLYGON
+// Of a convex polygon, one more than the light's own where the horizon cuts it, and one to spare; of a tube's 18 up to
+// three more, since its outline is not convex.
+#if EFFECT_TUBE
+#define OUTLINE_CORNERS 22
+#elif EFFECT_POLYGON
 #define OUTLINE_CORNERS 10
 #else
 #define OUTLINE_CORNERS 6
@@ -276,3 +282,30 @@ void ConeOutline(Cone cone, vec3 mirror, INOUT(Outline) outline) {
     outline.mirror_inside = m3 > 0.0 && m1 * m1 + m2 * m2 < m3 * m3;
   }
 }
+
+#if EFFECT_TUBE
+// What the point sees of a tube, its rims as chains of 8 chords.
+void TubeOutline(TubeChain chain, vec3 mirror, INOUT(Outline) outline) {
+  vec3 corners[OUTLINE_CORNERS];
+  int count = 0;
+  float growth = ChainGrowth(chain.widest, 8.0);
+  vec3 p = ChainCorner(chain, vec2(cos(chain.widest), -sin(chain.widest)), -1.0);
+  for (int i = 0; i < 18; ++i) {
+    int step = i < 9 ? i : 17 - i;
+    float angle = chain.widest * (0.25 * float(step) - 1.0);
+    float grown = step == 0 || step == 8 ? 1.0 : growth;
+    vec3 q = ChainCorner(chain, vec2(grown * cos(angle), grown * sin(angle)), i < 9 ? 1.0 : -1.0);
+    if (p.z >= 0.0) {
+      corners[count] = p;
+      count = count + 1;
+    }
+    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
+      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
+      corners[count] = vec3(cut.x, cut.y, 0.0);
+      count = count + 1;
+    }
+    p = q;
+  }
+  ChordOutline(corners, count, mirror, outline);
+}
+#endif
