@@ -6,8 +6,8 @@
 #include "app/commands.h"
 #include "app/progress.h"
 #include "compare/claims.h"
-#include "compare/page_parts.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {

@@ -12,6 +12,7 @@
 #include "compare/results_json.h"
 #include "compare/table.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {
@@ -153,13 +154,7 @@ int CompareCycles(const ShaderLibrary& library, const std::vector<Technique>& te
   fmt::print("{}: {} figures compared, {} more, {} fewer\n", file, figures, more, fewer);
   if (update) {
     stored["compilers"] = meter.compilers();
-    const std::string part = file + ".tmp";
-    std::ofstream out(part);
-    out << stored.dump(1) << "\n";
-    out.close();
-    std::error_code error;
-    if (out) std::filesystem::rename(part, file, error);
-    if (!out || error) throw InputError(fmt::format("{}: cannot be written; expected a file to replace", file));
+    ReplaceFile(file, stored.dump(1) + "\n");
     return 0;
   }
   if (more > 0) fmt::print(stderr, "if that is meant: arealab cost --baseline {} --update\n", file);

@@ -63,8 +63,12 @@ class ExportFolder {
   void Keep(const std::string& name, bool whole) {
     std::error_code error;
     if (whole) std::filesystem::rename(Path(name + ".part"), Path(name), error);
-    if (!whole || error) throw InputError(fmt::format("{}: not writable; expected a folder with room", Path(name).string()));
-    written_.push_back(name);
+    if (whole && !error) {
+      written_.push_back(name);
+      return;
+    }
+    std::filesystem::remove(Path(name + ".part"), error);
+    throw InputError(fmt::format("{}: not writable; expected a folder with room", Path(name).string()));
   }
 
   const std::vector<std::string>& written() const { return written_; }

@@ -6,9 +6,9 @@
 
 #include "app/commands.h"
 #include "app/progress.h"
-#include "compare/page_parts.h"
 #include "glsl/fit.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {

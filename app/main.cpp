@@ -5,9 +5,16 @@
 #include <string>
 
 #include "app/commands.h"
+#include "compare/cache_file.h"
 #include "scenes/error.h"
 
 namespace {
+
+// What a file or an argument holds may break the line or reach the terminal.
+std::string OneLine(std::string text) {
+  for (char& c : text) c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  return text;
+}
 
 std::string CommandLine(int argc, char** argv) {
   std::string line = "arealab";
@@ -48,13 +55,20 @@ int main(int argc, char** argv) {
   } catch (const CLI::CallForVersion& version) {
     return app.exit(version);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "arealab: {}; `arealab --help` lists what exists\n", error.what());
+    fmt::print(stderr, "arealab: {}; `arealab --help` lists what exists\n", OneLine(error.what()));
     return arealab::kExitBadInput;
   } catch (const arealab::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", OneLine(error.what()));
     return arealab::kExitBadInput;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "arealab: {}\n", error.what());
+    fmt::print(stderr, "arealab: {}\n", OneLine(error.what()));
+    return arealab::kExitBadInput;
+  }
+  if (const int damaged = arealab::DamagedCacheEntries(); damaged > 0) {
+    fmt::print(stderr, "cache: {} damaged {} made anew\n", damaged, damaged == 1 ? "entry was" : "entries were");
+  }
+  if (std::fflush(stdout) != 0) {
+    fmt::print(stderr, "standard output cannot be written; expected room\n");
     return arealab::kExitBadInput;
   }
   return status;

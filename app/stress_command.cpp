@@ -188,12 +188,12 @@ int RunStress(const StressArguments& arguments) {
     options.progress = [&](const std::string& what, double fraction) { progress.Show(what, fraction); };
     result = Stress(*context, library, options);
   }
+  if (!arguments.out.empty()) WriteStressPage(result, arguments.out);
   if (arguments.json) {
     PrintStressJson(result);
   } else {
     PrintStress(result);
   }
-  if (!arguments.out.empty()) WriteStressPage(result, arguments.out);
   return result.failures() == 0 ? 0 : kExitLimitExceeded;
 }
 

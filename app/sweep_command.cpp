@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <fstream>
 
 #include "app/commands.h"
 #include "app/progress.h"
 #include "compare/harness.h"
 #include "compare/sweep.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {
@@ -71,10 +71,7 @@ void RunSweep(const SweepArguments& arguments, const std::string& command_line) 
     for (std::size_t v = 0; v < values.size(); ++v) {
       const SweepPoint point = MakeSweepPoint(axis, values[v], arguments.common.Size());
       const std::filesystem::path file = folder / "scenes" / fmt::format("{}-{}.toml", axis.name, values[v]);
-      std::ofstream out(file);
-      out << point.scene;
-      out.close();
-      if (!out) throw InputError(fmt::format("{}: cannot be written; expected a folder with room", file.string()));
+      ReplaceFile(file, point.scene);
       options.scenes = {file};
       options.size = point.size;
       options.variants.clear();

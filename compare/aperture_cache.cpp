@@ -1,11 +1,10 @@
 #include "compare/aperture_cache.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
+#include <cstring>
+#include <optional>
+#include <string>
 
-#include <fstream>
-#include <system_error>
-
+#include "compare/cache_file.h"
 #include "compare/content_hash.h"
 #include "compare/truth_bands.h"
 #include "scenes/bake.h"
@@ -13,42 +12,28 @@
 namespace arealab {
 namespace {
 
-constexpr std::uint64_t kApertureVersion = 3;  // changes whenever the bake's results or the file's layout change
+constexpr std::uint64_t kApertureVersion = 4;  // changes whenever the bake's results or the file's layout change
 
-std::uint64_t Checksum(const Scene& scene) {
-  ContentHash hash;
-  for (const Mesh& mesh : scene.meshes) hash.Bytes(mesh.apertures.data(), mesh.apertures.size() * sizeof(Aperture));
-  return hash.low();
-}
-
-// Every mesh's apertures, then the checksum.
-bool Read(const std::filesystem::path& file, Scene& scene) {
-  std::ifstream in(file, std::ios::binary);
+// Every mesh's apertures.
+bool Decode(const std::optional<std::string>& entry, Scene& scene) {
+  std::size_t size = 0;
+  for (const Mesh& mesh : scene.meshes) size += mesh.vertices.size() * sizeof(Aperture);
+  if (!entry || entry->size() != size) return false;
+  const char* from = entry->data();
   for (Mesh& mesh : scene.meshes) {
     mesh.apertures.resize(mesh.vertices.size());
-    in.read(reinterpret_cast<char*>(mesh.apertures.data()),
-            static_cast<std::streamsize>(mesh.apertures.size() * sizeof(Aperture)));
+    std::memcpy(mesh.apertures.data(), from, mesh.apertures.size() * sizeof(Aperture));
+    from += mesh.apertures.size() * sizeof(Aperture);
   }
-  std::uint64_t checksum = 0;
-  in.read(reinterpret_cast<char*>(&checksum), sizeof checksum);
-  return in && in.peek() == std::ifstream::traits_type::eof() && checksum == Checksum(scene);
+  return true;
 }
 
-void Write(const std::filesystem::path& file, const Scene& scene) {
-  std::filesystem::path part = file;
-  part += fmt::format(".{}.tmp", ::getpid());
-  std::error_code ignored;
-  std::filesystem::create_directories(file.parent_path(), ignored);
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
+std::string Encode(const Scene& scene) {
+  std::string bytes;
   for (const Mesh& mesh : scene.meshes) {
-    out.write(reinterpret_cast<const char*>(mesh.apertures.data()),
-              static_cast<std::streamsize>(mesh.apertures.size() * sizeof(Aperture)));
+    bytes.append(reinterpret_cast<const char*>(mesh.apertures.data()), mesh.apertures.size() * sizeof(Aperture));
   }
-  const std::uint64_t checksum = Checksum(scene);
-  out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-  out.close();
-  if (out) std::filesystem::rename(part, file, ignored);
-  if (!out || ignored) std::filesystem::remove(part, ignored);
+  return bytes;
 }
 
 }  // namespace
@@ -60,10 +45,10 @@ bool CachedApertures(Scene& scene, const std::filesystem::path& cache_folder,
   hash.Value(kApertureVersion);
   hash.Value(scene.aperture->rays);
   AddTriangles(hash, scene);
-  const std::filesystem::path file = cache_folder / (hash.Name() + ".apertures");
-  if (Read(file, scene)) return true;
+  const std::string name = hash.Name() + ".apertures";
+  if (Decode(ReadCacheEntry(cache_folder, name), scene)) return true;
   BakeApertures(scene, progress);
-  Write(file, scene);
+  WriteCacheEntry(cache_folder, name, Encode(scene));
   return false;
 }
 

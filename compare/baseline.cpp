@@ -3,28 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <iterator>
 
+#include "compare/read_results.h"
 #include "scenes/error.h"
 
 namespace arealab {
 namespace {
 
-using nlohmann::json;
-
-double NumberOf(const json& value) {
-  return value.is_number() ? value.get<double>() : kNotMeasured;
-}
+using json = nlohmann::ordered_json;
 
 json ReadResults(const std::filesystem::path& file) {
-  std::ifstream in(file);
+  std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(fmt::format("{}: cannot be read; expected a results.json of an earlier run", file.string()));
-  const json results = json::parse(in, nullptr, false);
-  if (results.is_discarded() || results.value("schema", 0) != 1 || !results.contains("scenes")) {
-    throw InputError(fmt::format("{}: not results of `arealab compare`; expected its results.json", file.string()));
-  }
-  return results;
+  return ParseResults(file.string(), std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
 // The element of that name, or null.
@@ -49,9 +43,9 @@ void CompareError(const std::string& who, const VariantResult& now, double now_n
 
 void CompareTime(const std::string& who, const Timing& now, const json& before, BaselineReport& report) {
   const json& interval = before.at("time").at("ratio_interval");
-  if (!interval.is_array() || !std::isfinite(now.ratio_to_point.value)) return;
+  if (!IsInterval(interval) || !std::isfinite(now.ratio_to_point.value)) return;
   ++report.compared;
-  if (now.ratio_to_point.low <= interval[1].get<double>()) return;
+  if (now.ratio_to_point.low <= NumberOf(interval[1])) return;
   report.worse.push_back(fmt::format("{}: {:.2f} × point ({:.2f} to {:.2f}) → {:.2f} ({:.2f} to {:.2f})", who,
                                      NumberOf(before.at("time").at("ratio_to_point")), NumberOf(interval[0]), NumberOf(interval[1]),
                                      now.ratio_to_point.value, now.ratio_to_point.low, now.ratio_to_point.high));
@@ -61,7 +55,8 @@ void CompareCycles(const std::string& who, const VariantResult& now, const json&
   for (const auto& [gpu, cost] : now.isa) {
     if (!before.at("isa").contains(gpu)) continue;
     for (const auto& [part, shader] : {std::pair("core", &cost.core), std::pair("full", &cost.full)}) {
-      const int old = before.at("isa").at(gpu).at(part).at("cycles").get<int>();
+      const double old = NumberOf(before.at("isa").at(gpu).at(part).at("cycles"));
+      if (!std::isfinite(old)) continue;
       ++report.compared;
       if (shader->cycles > old) report.worse.push_back(fmt::format("{}: {} {} {} → {} cycles", who, gpu, part, old, shader->cycles));
     }
@@ -70,9 +65,8 @@ void CompareCycles(const std::string& who, const VariantResult& now, const json&
 
 void CompareScene(const Results& results, const SceneResult& now, const json& baseline, const json& before, BaselineReport& report) {
   if (before.at("width") != now.width || before.at("height") != now.height) {
-    throw InputError(fmt::format("{}: the baseline has {}x{} pixels; expected --size {}x{}", now.name,
-                                 before.at("width").get<int>(), before.at("height").get<int>(), before.at("width").get<int>(),
-                                 before.at("height").get<int>()));
+    const std::string size = fmt::format("{}x{}", NumberOf(before["width"]), NumberOf(before["height"]));
+    throw InputError(fmt::format("{}: the baseline has {} pixels; expected --size {}", now.name, size, size));
   }
   const double before_noise = NumberOf(before.at("truth").at("relative_error"));
   const bool same_compilers = baseline.value("isa_compilers", json()) == json(results.compilers);

@@ -1,7 +1,6 @@
 #include "compare/check.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -20,6 +19,7 @@
 #include "glsl/renderer.h"
 #include "scenes/bake.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {
@@ -127,21 +127,6 @@ std::string BandsText(const BandsFile& bands, glm::ivec2 size) {
   return text + "\n  }\n}\n";
 }
 
-// A name that no reader takes for a golden, in the same folder, so that the rename is one step.
-fs::path TemporaryName(const fs::path& file) {
-  return file.parent_path() /
-         fmt::format(".{}.{}{}", file.stem().string(), getpid(), file.extension().string());
-}
-
-void MoveIntoPlace(const fs::path& temporary, const fs::path& file) {
-  std::error_code error;
-  fs::rename(temporary, file, error);
-  if (error) {
-    throw InputError(fmt::format("{}: cannot be replaced ({}); expected a folder that may be written to",
-                                 file.string(), error.message()));
-  }
-}
-
 void MakeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -152,21 +137,7 @@ void MakeFolder(const fs::path& folder) {
 }
 
 void WriteBands(const fs::path& folder, const BandsFile& bands, glm::ivec2 size) {
-  const fs::path file = folder / kBandsFile;
-  const fs::path temporary = TemporaryName(file);
-  std::ofstream stream(temporary, std::ios::binary);
-  stream << BandsText(bands, size);
-  stream.close();
-  if (!stream)
-    throw InputError(fmt::format("{}: cannot be written; expected a folder with room", file.string()));
-  MoveIntoPlace(temporary, file);
-}
-
-void WriteGolden(const fs::path& file, const HalfImage& image) {
-  MakeFolder(file.parent_path());
-  const fs::path temporary = TemporaryName(file);
-  WriteExr(temporary, image);
-  MoveIntoPlace(temporary, file);
+  ReplaceFile(folder / kBandsFile, BandsText(bands, size));
 }
 
 bool SameBits(const RadianceImage& a, const RadianceImage& b) {
@@ -432,7 +403,7 @@ class Checker {
       change = failure ? fmt::format("golden changed ({})", failure->message)
                        : "golden changed within its tolerance";
     }
-    if (!change.empty()) WriteGolden(file, half);
+    if (!change.empty()) WriteExr(file, half);
 
     const std::array<double, 3> errors = ErrorsAgainst(*row.truth, *row.image);
     std::map<std::string, Bands>& scene = bands_.scenes[row.scene];

@@ -10,6 +10,7 @@
 #include "compare/image_files.h"
 #include "compare/metrics.h"
 #include "compare/page_parts.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {

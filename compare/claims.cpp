@@ -6,9 +6,10 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
+#include <sstream>
 
+#include "compare/cache_file.h"
 #include "compare/content_hash.h"
 #include "compare/page_parts.h"
 #include "glsl/variant.h"
@@ -197,12 +198,13 @@ void LinkClaimsPages(std::vector<ClaimsPage>& pages, const std::string& report) 
 namespace {
 
 // A line of the verdicts' counts, then the page.
-std::optional<ClaimsPage> ReadClaimsPage(const ClaimSource& source, const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
+std::optional<ClaimsPage> ReadClaimsPage(const ClaimSource& source, const std::optional<std::string>& entry) {
+  if (!entry) return std::nullopt;
+  std::istringstream in(*entry);
   ClaimsPage page{.name = source.name, .citation = source.citation, .title = source.title, .html = ""};
   if (!(in >> page.holds >> page.partly >> page.fails >> page.unknown) || in.get() != '\n') return std::nullopt;
-  page.html.assign(std::istreambuf_iterator<char>(in), {});
-  return page.html.ends_with("</html>\n") ? std::optional(page) : std::nullopt;
+  page.html = entry->substr(static_cast<std::size_t>(in.tellg()));
+  return page;
 }
 
 }  // namespace
@@ -218,16 +220,12 @@ std::vector<ClaimsPage> CachedClaimsPages(const std::vector<ClaimSource>& source
   std::unique_ptr<ClaimBench> made;
   std::vector<ClaimsPage> pages;
   for (const ClaimSource& source : sources) {
-    const std::filesystem::path file = cache / fmt::format("{}-{}.claims", hash.Name(), source.name);
-    std::optional<ClaimsPage> page = ReadClaimsPage(source, file);
+    const std::string name = fmt::format("{}-{}.claims", hash.Name(), source.name);
+    std::optional<ClaimsPage> page = ReadClaimsPage(source, ReadCacheEntry(cache, name));
     if (!page) {
       if (!made) made = bench();
       page = MakeClaimsPage(source, CheckClaims(source, *made));
-      try {
-        ReplaceFile(file, fmt::format("{} {} {} {}\n{}", page->holds, page->partly, page->fails, page->unknown, page->html));
-      } catch (const InputError&) {
-        // A folder that cannot be written to costs the storing, not the page.
-      }
+      WriteCacheEntry(cache, name, fmt::format("{} {} {} {}\n{}", page->holds, page->partly, page->fails, page->unknown, page->html));
     }
     pages.push_back(std::move(*page));
   }

@@ -3,20 +3,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
+#include <filesystem>
 #include <mutex>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <thread>
 
+#include "compare/cache_file.h"
 #include "compare/content_hash.h"
 #include "compare/spirv.h"
 #include "compare/subprocess.h"
@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Changes whenever the harness, the compilers' options or the cache's layout change.
-constexpr int kCostVersion = 2;
+constexpr int kCostVersion = 3;
 
 constexpr std::array kGpus = {"tahiti",   "pitcairn", "verde",  "bonaire", "hawaii", "tonga",  "fiji",    "polaris10",
                               "polaris11", "polaris12", "vega10", "vega12",  "vega20", "raven",  "renoir",  "navi10",
@@ -182,7 +182,7 @@ std::vector<std::uint32_t> CostMeter::Translate(const Text& text) {
   throw InputError(fmt::format("{}: glslang says \"{}\"; expected SPIR-V", text.who, FirstLine(result.log)));
 }
 
-fs::path CostMeter::CacheFile(std::string_view vertex, std::string_view fragment, int targets, const std::string& gpu) const {
+std::string CostMeter::CacheName(std::string_view vertex, std::string_view fragment, int targets, const std::string& gpu) const {
   ContentHash hash;
   hash.Value(kCostVersion);
   hash.Text(compilers_);
@@ -190,7 +190,7 @@ fs::path CostMeter::CacheFile(std::string_view vertex, std::string_view fragment
   hash.Value(targets);
   hash.Text(std::string(vertex));
   hash.Text(std::string(fragment));
-  return cache_ / (hash.Name() + ".isa");
+  return hash.Name() + ".isa";
 }
 
 void CostMeter::Compile(std::span<const Job> jobs, const std::string& gpu) const {
@@ -222,7 +222,7 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     Text text;
     std::vector<std::uint32_t> words;
     std::vector<ShaderCost> costs;                   // by GPU
-    std::vector<fs::path> files, word_files;         // the costs under the text's name, and under the words'
+    std::vector<std::string> files, word_files;         // the costs under the text's name, and under the words'
     const std::vector<ShaderCost>* found = nullptr;  // by whoever has the same words
     std::vector<std::pair<std::size_t, std::string>> places;  // variant, "core", "full" or a path
   };
@@ -252,14 +252,13 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     }
   }
 
-  const auto load = [&](Entry& entry, std::vector<fs::path>& files, std::string_view vertex_key, std::string_view key) {
+  const auto load = [&](Entry& entry, std::vector<std::string>& files, std::string_view vertex_key, std::string_view key) {
     entry.costs.resize(gpus_.size());
     bool known = true;
     for (std::size_t g = 0; g < gpus_.size(); ++g) {
-      files.push_back(CacheFile(vertex_key, key, entry.text.targets, gpus_[g]));
-      std::ifstream in(files.back());
-      std::string line;
-      known = std::getline(in, line) && Parse(line, entry.costs[g]) && known;
+      files.push_back(CacheName(vertex_key, key, entry.text.targets, gpus_[g]));
+      const std::optional<std::string> line = ReadCacheEntry(cache_, files.back());
+      known = line && Parse(*line, entry.costs[g]) && known;
     }
     return known;
   };
@@ -283,7 +282,7 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     });
     // Half of the texts differ in what no function of theirs asks for, an effect or the scene's other shapes.
     std::vector<Entry*> compiled;
-    std::map<fs::path, const Entry*> by_words;
+    std::map<std::string, const Entry*> by_words;
     for (Entry* entry : missing) {
       const bool known = load(*entry, entry->word_files, Bytes(vertex_words), Bytes(entry->words));
       const auto [first, added] = by_words.emplace(entry->word_files.front(), entry);
@@ -322,7 +321,8 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
     }
   }
   for (auto& costs : found) {
-    for (auto& [gpu, cost] : costs) {
+    for (auto& on_gpu : costs) {
+      GpuCost& cost = on_gpu.second;
       // The text may ask and the shape of the light not.
       const auto same = [&](const char* a, const ShaderCost& b) { return !cost.paths.contains(a) || cost.paths.at(a) == b; };
       if (cost.paths.contains("above") && same("crossing", cost.paths.at("above")) && same("below", cost.paths.at("above"))) {
@@ -336,19 +336,9 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
   return found;
 }
 
-// Under a name of its own, then renamed. A folder that cannot be written to costs the storing, not the figures.
-void CostMeter::Store(const fs::path& file, const ShaderCost& cost) {
-  static std::atomic<unsigned> serial{0};
-  std::error_code ignored;
-  fs::create_directories(file.parent_path(), ignored);
-  fs::path part = file;
-  part += fmt::format(".{}-{}.tmp", ::getpid(), serial++);
-  std::ofstream out(part, std::ios::trunc);
-  out << fmt::format("{} {} {} {} {} {} {}\n", cost.instructions, cost.cycles, cost.vgprs, cost.sgprs, cost.spills,
-                     cost.branches, cost.bytes);
-  out.close();
-  if (out) fs::rename(part, file, ignored);
-  fs::remove(part, ignored);
+void CostMeter::Store(const std::string& name, const ShaderCost& cost) const {
+  WriteCacheEntry(cache_, name, fmt::format("{} {} {} {} {} {} {}\n", cost.instructions, cost.cycles, cost.vgprs, cost.sgprs,
+                                            cost.spills, cost.branches, cost.bytes));
 }
 
 Scene SceneOfEffects(const std::vector<std::string>& effects) {

@@ -57,10 +57,10 @@ class CostMeter {
   struct Text;
   struct Job;
   static std::vector<std::uint32_t> Translate(const Text& text);
-  std::filesystem::path CacheFile(std::string_view vertex, std::string_view fragment, int targets, const std::string& gpu) const;
+  std::string CacheName(std::string_view vertex, std::string_view fragment, int targets, const std::string& gpu) const;
   std::vector<std::pair<std::string, std::string>> WorkerEnvironment(const std::string& gpu) const;
   void Compile(std::span<const Job> jobs, const std::string& gpu) const;
-  static void Store(const std::filesystem::path& file, const ShaderCost& cost);
+  void Store(const std::string& name, const ShaderCost& cost) const;
 
   std::vector<std::string> gpus_;
   std::filesystem::path cache_;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "scenes/error.h"
+#include "scenes/write_image.h"
 
 namespace arealab {
 namespace {
@@ -28,23 +29,6 @@ const char* const kLayers[2] = {"diffuse", "specular"};
   const float denormal = static_cast<float>(static_cast<int>(size)) * 0x1p-24f;
   const std::uint32_t v = size < 0x400u ? std::bit_cast<std::uint32_t>(denormal) : (size << 13) + bias;
   return std::bit_cast<float>(v | sign);
-}
-
-[[noreturn]] void Fail(const std::filesystem::path& file, const std::string& why) {
-  throw InputError(
-      fmt::format("{}: cannot write the image ({}); expected a folder with room that may be written to",
-                  file.string(), why));
-}
-
-// `pixels` are interleaved, `stride` bytes a pixel.
-void WriteFile(const std::filesystem::path& file, OIIO::ImageSpec spec, const void* pixels) {
-  spec.attribute("DateTime", "");  // else the time of day: the same image must give the same bytes
-  auto output = OIIO::ImageOutput::create(file.string());
-  if (!output) Fail(file, OIIO::geterror());
-  output->threads(1);  // the caller writes many files at once
-  if (!output->open(file.string(), spec) || !output->write_image(spec.format, pixels) || !output->close()) {
-    Fail(file, output->geterror());
-  }
 }
 
 // sRGB's transfer curve [IEC 61966-2-1], in and out in [0, 1].
@@ -250,13 +234,13 @@ void WriteExr(const std::filesystem::path& file, const HalfImage& image, ExrLoss
       const auto& plane = image.planes[static_cast<std::size_t>(planes[p])];
       for (std::size_t i = 0; i < size; ++i) pixels[i * planes.size() + p] = plane[i];
     }
-    WriteFile(file, spec, pixels.data());
+    WriteImageFile(file, spec, pixels.data());
   } else {
     std::vector<float> pixels(size * planes.size());
     for (std::size_t p = 0; p < planes.size(); ++p) {
       for (std::size_t i = 0; i < size; ++i) pixels[i * planes.size() + p] = image.Value(planes[p], i);
     }
-    WriteFile(file, spec, pixels.data());
+    WriteImageFile(file, spec, pixels.data());
   }
 }
 
@@ -274,7 +258,7 @@ void WriteExr(const std::filesystem::path& file, const RadianceImage& image) {
       for (int c = 0; c < 3; ++c) pixels.push_back((*lobe)[i][c]);
     }
   }
-  WriteFile(file, spec, pixels.data());
+  WriteImageFile(file, spec, pixels.data());
 }
 
 RadianceImage ReadExr(const std::filesystem::path& file) {
@@ -330,7 +314,7 @@ void WritePngCodes(const std::filesystem::path& file, std::span<const std::uint8
   OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("png:compressionLevel", 6);
-  WriteFile(file, spec, codes.data());
+  WriteImageFile(file, spec, codes.data());
 }
 
 std::vector<glm::vec3> Picture(const RadianceImage& image, std::span<const glm::vec3> emission) {

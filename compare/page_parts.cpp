@@ -3,12 +3,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <stdexcept>
-
-#include "scenes/error.h"
 
 namespace arealab {
 namespace {
@@ -65,21 +61,6 @@ std::string Escaped(const std::string& text) {
     }
   }
   return escaped;
-}
-
-void ReplaceFile(const std::filesystem::path& file, const std::string& html) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  const fs::path temporary = file.string() + fmt::format(".{}.tmp", getpid());
-  std::ofstream stream(temporary, std::ios::binary);
-  stream << html;
-  stream.close();
-  if (stream) fs::rename(temporary, file, error);
-  if (!stream || error) {
-    throw InputError(fmt::format("{}: cannot be written; expected a folder with room that may be written to",
-                                 file.string()));
-  }
 }
 
 }  // namespace arealab

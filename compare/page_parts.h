@@ -62,7 +62,4 @@ std::string FigureHtml(const std::vector<Rgb>& pixels, int width, const std::str
 // Text that stands in HTML.
 std::string Escaped(const std::string& text);
 
-// Writes under a temporary name and moves into place; makes the folder. Throws InputError where it cannot.
-void ReplaceFile(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace arealab

@@ -13,6 +13,7 @@
 #include "glsl/gl_objects.h"
 #include "glsl/light_block.h"
 #include "glsl/program.h"
+#include "glsl/shading_watch.h"
 #include "glsl/table.h"
 #include "scenes/error.h"
 
@@ -182,6 +183,7 @@ std::vector<Shaded> PointShader::Shade(const Variant& variant, std::span<const P
                                        const PointOptions& options) {
   std::vector<Shaded> result(cases.size());
   if (cases.empty()) return result;
+  const ShadingWatch watch(impl_->library.DisplayPath("techniques/" + variant.technique->name + ".glsl"), cases.size());
   const Program& program = impl_->Prepare(variant, cases, options);
   constexpr std::size_t kBatch = std::size_t{kColumns} * kMostRows;
   for (std::size_t first = 0; first < cases.size(); first += kBatch) {

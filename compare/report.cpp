@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -81,6 +83,34 @@ void RemoveStale(const fs::path& target) {
   for (const fs::path& folder : stale) fs::remove_all(folder, ignored);
 }
 
+// The folders that are being filled. Where a shader that never ends ends the program (glsl/shading_watch.h) they go too.
+class PartialFolders {
+ public:
+  void Add(const fs::path& folder) {
+    const std::lock_guard lock(mutex_);
+    if (folders_.empty() && !registered_) registered_ = std::at_quick_exit([] { All().Remove(); }) == 0;
+    folders_.insert(folder);
+  }
+  void Forget(const fs::path& folder) {
+    const std::lock_guard lock(mutex_);
+    folders_.erase(folder);
+  }
+  static PartialFolders& All() {
+    static PartialFolders all;
+    return all;
+  }
+
+ private:
+  void Remove() {
+    const std::lock_guard lock(mutex_);
+    std::error_code ignored;
+    for (const fs::path& folder : folders_) fs::remove_all(folder, ignored);
+  }
+  std::mutex mutex_;
+  std::set<fs::path> folders_;
+  bool registered_ = false;
+};
+
 // The folder that is being filled; removed again unless it was moved into place.
 class PartialFolder {
  public:
@@ -93,10 +123,12 @@ class PartialFolder {
       throw InputError(fmt::format("{}: cannot create ({}); expected a folder that may be written to",
                                    path_.string(), error.message()));
     }
+    PartialFolders::All().Add(path_);
   }
   ~PartialFolder() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
+    PartialFolders::All().Forget(path_);
   }
   PartialFolder(const PartialFolder&) = delete;
   PartialFolder& operator=(const PartialFolder&) = delete;

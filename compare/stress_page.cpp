@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compare/page_parts.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,9 +12,11 @@
 #include <optional>
 
 #include "compare/page_data.h"
+#include "compare/read_results.h"
 #include "compare/report.h"
 #include "compare/table.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {
@@ -86,10 +87,6 @@ std::string SceneText(const std::string& axis, double value) {
   return kCamera + MaterialText(0.3) + kFloor + kUsualPanel;  // pixels, samples
 }
 
-double NumberOf(const Json& value) {
-  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
-
 // Seconds of the whole pass: what grows with lights and pixels alike.
 double PassSeconds(const Json& scene, const Json& variant) {
   return 1e-9 * NumberOf(variant.at("time").at("ns_per_pixel")) * NumberOf(scene.at("lit_pixels"));
@@ -112,16 +109,6 @@ std::optional<double> Exponent(const std::vector<std::pair<double, double>>& poi
 std::string CurveName(const std::string& axis, const Json& variant) {
   const std::string name = variant.at("short_name");
   return axis == "samples" ? name.substr(0, name.find("+samples=")) : name;
-}
-
-void WriteFile(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path part = file.string() + ".tmp";
-  std::ofstream out(part, std::ios::binary);
-  out << text;
-  out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(part, file, error);
-  if (!out || error) throw InputError(fmt::format("{}: cannot be written; expected a folder with room", file.string()));
 }
 
 }  // namespace
@@ -180,7 +167,7 @@ std::string WriteSweep(const std::vector<std::string>& parts, const std::filesys
     std::map<double, Json> scenes;
     std::string axis;
     for (const std::string& part : parts) {
-      const Json json = Json::parse(part);
+      const Json json = ParseResults(fmt::format("part {}", 1 + (&part - parts.data())), part);
       if (joined.is_null()) joined = json;
       if (json.at("isa_compilers") != joined.at("isa_compilers") || json.at("version") != joined.at("version")) {
         throw InputError("parts of different versions of AreaLab or of the compilers; expected one of each");
@@ -204,13 +191,13 @@ std::string WriteSweep(const std::vector<std::string>& parts, const std::filesys
         if (!costs.contains(name)) order.push_back(name);
         const Json& time = variant.at("time");
         const double pass = PassSeconds(scene, variant);
-        const double cycles = variant.at("isa").contains("bonaire") ? NumberOf(variant["isa"]["bonaire"]["core"]["cycles"])
+        const double cycles = variant.at("isa").contains("bonaire") ? NumberOf(variant.at("isa").at("bonaire").at("core").at("cycles"))
                                                                     : std::numeric_limits<double>::quiet_NaN();
         costs[name].emplace_back(value, pass);
-        const Json interval = time.at("ns_interval").is_array() ? time["ns_interval"] : Json::array({nullptr, nullptr});
+        const Json interval = IsInterval(time.at("ns_interval")) ? time["ns_interval"] : Json::array({nullptr, nullptr});
         std::vector<std::string> fields = {axis, fmt::format("{}", value), name};
-        for (const double v : {NumberOf(variant["error"]["total"]["rel_rmse"]), NumberOf(time["ns_per_pixel"]), NumberOf(interval[0]),
-                               NumberOf(interval[1]), pass, NumberOf(time["ratio_to_point"]), cycles}) {
+        for (const double v : {NumberOf(variant.at("error").at("total").at("rel_rmse")), NumberOf(time.at("ns_per_pixel")), NumberOf(interval[0]),
+                               NumberOf(interval[1]), pass, NumberOf(time.at("ratio_to_point")), cycles}) {
           fields.push_back(std::isfinite(v) ? fmt::format("{:.9g}", v) : "");
         }
         csv += fmt::format("{}\r\n", fmt::join(fields, ","));
@@ -223,11 +210,9 @@ std::string WriteSweep(const std::vector<std::string>& parts, const std::filesys
       joined["exponents"][name] = time ? Json(*time) : Json(nullptr);
       rows.push_back({name, time ? fmt::format("{:.2f}", *time) : "–", ""});
     }
-    std::error_code error;
-    std::filesystem::create_directories(directory, error);
-    WriteFile(directory / "results.json", joined.dump(1) + "\n");
-    WriteFile(directory / "curves.csv", csv);
-    WriteFile(directory / "index.html", SweepPage(ScriptSafe(joined.dump())));
+    ReplaceFiles({{directory / "results.json", joined.dump(1) + "\n"},
+                  {directory / "curves.csv", csv},
+                  {directory / "index.html", SweepPage(ScriptSafe(joined.dump()))}});
     return fmt::format("time of the whole pass, fitted as {}^exponent over {} values:\n{}", axis, scenes.size(), AlignedTable(rows));
   } catch (const Json::exception& wrong) {
     throw InputError(fmt::format("{}; expected results.json of `arealab sweep`", wrong.what()));

@@ -1,21 +1,17 @@
 #include "compare/truth_cache.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <filesystem>
 #include <optional>
-#include <span>
 #include <system_error>
 #include <type_traits>
 
+#include "compare/cache_file.h"
 #include "compare/content_hash.h"
 #include "compare/shadowed_truth.h"
 #include "compare/truth_bands.h"
@@ -24,92 +20,48 @@ namespace arealab {
 namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
-constexpr std::uint64_t kTruthVersion = 6;
+constexpr std::uint64_t kTruthVersion = 7;
 constexpr std::uint64_t kShadowVersion = 4;  // of the visibility on top of it
-constexpr std::array<char, 8> kMagic = {'A', 'L', 'T', 'R', 'U', 'T', 'H', '1'};
-
 struct Header {
-  std::array<char, 8> magic;
-  std::array<char, 32> key;
-  std::uint64_t version, width, rows, checksum;
+  std::uint64_t version, width, rows;
   double seconds;
 };
 
-std::size_t PixelCount(const Header& header) {
-  return static_cast<std::size_t>(header.width * header.rows);
-}
-
-std::uint64_t Checksum(const TruthBand& band) {
-  ContentHash hash;
-  hash.Bytes(band.diffuse.data(), band.diffuse.size() * sizeof(glm::vec3));
-  hash.Bytes(band.specular.data(), band.specular.size() * sizeof(glm::vec3));
-  hash.Bytes(band.relative_error.data(), band.relative_error.size() * sizeof(float));
-  return hash.low();
-}
-
-// Reads what Write wrote for this key and size; nothing where it is anything else.
-std::optional<TruthBand> Read(const std::filesystem::path& file, const std::string& key, int width,
-                              int rows) {
-  std::ifstream in(file, std::ios::binary);
+// What Encode made for this size; nothing where it is anything else.
+std::optional<TruthBand> Decode(const std::optional<std::string>& entry, int width, int rows) {
+  const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
   Header header{};
-  if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic ||
-      header.version != kTruthVersion || std::string_view(header.key.data(), header.key.size()) != key ||
-      header.width != static_cast<std::uint64_t>(width) || header.rows != static_cast<std::uint64_t>(rows)) {
+  if (!entry || entry->size() != sizeof header + count * (2 * sizeof(glm::vec3) + sizeof(float))) return std::nullopt;
+  const char* from = entry->data();
+  const auto take = [&](void* data, std::size_t size) {
+    std::memcpy(data, from, size);
+    from += size;
+  };
+  take(&header, sizeof header);
+  if (header.version != kTruthVersion || header.width != static_cast<std::uint64_t>(width) ||
+      header.rows != static_cast<std::uint64_t>(rows)) {
     return std::nullopt;
   }
   TruthBand band;
-  std::size_t count = PixelCount(header);
   band.diffuse.resize(count);
   band.specular.resize(count);
   band.relative_error.resize(count);
   band.seconds = header.seconds;
-  auto read = [&](void* data, std::size_t size) {
-    in.read(static_cast<char*>(data), static_cast<std::streamsize>(size));
-  };
-  read(band.diffuse.data(), count * sizeof(glm::vec3));
-  read(band.specular.data(), count * sizeof(glm::vec3));
-  read(band.relative_error.data(), count * sizeof(float));
-  if (!in || in.peek() != std::ifstream::traits_type::eof() || Checksum(band) != header.checksum) {
-    return std::nullopt;
-  }
+  take(band.diffuse.data(), count * sizeof(glm::vec3));
+  take(band.specular.data(), count * sizeof(glm::vec3));
+  take(band.relative_error.data(), count * sizeof(float));
   return band;
 }
 
-// Under a name of its own, then renamed: a reader sees all of it or nothing. Failures are silent, see
-// CachedTruth.
-void Write(const std::filesystem::path& file, const std::string& key, int width, int rows,
-           const TruthBand& band) {
-  static std::atomic<unsigned> serial{0};
-  std::filesystem::path part = file;
-  part += fmt::format(".{}-{}.tmp", ::getpid(), serial++);
-  std::error_code ignored;
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    Header header{kMagic,
-                  {},
-                  kTruthVersion,
-                  static_cast<std::uint64_t>(width),
-                  static_cast<std::uint64_t>(rows),
-                  Checksum(band),
-                  band.seconds};
-    std::memcpy(header.key.data(), key.data(), header.key.size());
-    auto write = [&](const void* data, std::size_t size) {
-      out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-    };
-    write(&header, sizeof header);
-    write(band.diffuse.data(), band.diffuse.size() * sizeof(glm::vec3));
-    write(band.specular.data(), band.specular.size() * sizeof(glm::vec3));
-    write(band.relative_error.data(), band.relative_error.size() * sizeof(float));
-    if (!out.flush()) {
-      out.close();
-      std::filesystem::remove(part, ignored);
-      return;
-    }
-  }
-  std::filesystem::rename(part, file, ignored);
-  if (ignored) {
-    std::filesystem::remove(part, ignored);
-  }
+std::string Encode(int width, int rows, const TruthBand& band) {
+  const Header header{kTruthVersion, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(rows), band.seconds};
+  std::string bytes;
+  const auto append = [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); };
+  append(&header, sizeof header);
+  append(band.diffuse.data(), band.diffuse.size() * sizeof(glm::vec3));
+  append(band.specular.data(), band.specular.size() * sizeof(glm::vec3));
+  append(band.relative_error.data(), band.relative_error.size() * sizeof(float));
+  return bytes;
 }
 
 void AddVector(ContentHash& hash, const glm::dvec3& v) {
@@ -183,15 +135,12 @@ std::string ShadowKey(const Scene& scene, const SurfacePixels& pixels, const Tru
 CachedPicture CachedBands(const SurfacePixels& pixels, const std::string& key,
                           const std::function<BandShader()>& make_shader,
                           const std::function<void(double)>& progress, const std::filesystem::path& cache_folder) {
-  const std::filesystem::path whole_file = cache_folder / (key + ".truth"),
-                              parts = cache_folder / (key + ".parts");
-  if (auto whole = Read(whole_file, key, pixels.width, pixels.height)) {
+  const std::string whole_name = key + ".truth", parts = key + ".parts";
+  if (auto whole = Decode(ReadCacheEntry(cache_folder, whole_name), pixels.width, pixels.height)) {
     return {std::move(*whole), true};
   }
   auto start = std::chrono::steady_clock::now();
-  std::error_code ignored;
-  std::filesystem::create_directories(parts, ignored);
-  auto part_file = [&](int band) { return parts / fmt::format("{}.rows", band * kTruthBandRows); };
+  const auto part_name = [&](int band) { return fmt::format("{}/{}.rows", parts, band * kTruthBandRows); };
   auto rows = [&](int band) { return std::min(kTruthBandRows, pixels.height - band * kTruthBandRows); };
 
   int band_count = (pixels.height + kTruthBandRows - 1) / kTruthBandRows;
@@ -199,7 +148,7 @@ CachedPicture CachedBands(const SurfacePixels& pixels, const std::string& key,
   std::vector<bool> wanted(bands.size(), true);
   double reused_seconds = 0.0;
   for (int b = 0; b < band_count; ++b) {
-    if (auto band = Read(part_file(b), key, pixels.width, rows(b))) {
+    if (auto band = Decode(ReadCacheEntry(cache_folder, part_name(b)), pixels.width, rows(b))) {
       reused_seconds += band->seconds;
       bands[static_cast<std::size_t>(b)] = std::move(*band);
       wanted[static_cast<std::size_t>(b)] = false;
@@ -207,12 +156,15 @@ CachedPicture CachedBands(const SurfacePixels& pixels, const std::string& key,
   }
   const bool missing = std::find(wanted.begin(), wanted.end(), true) != wanted.end();
   ShadeBands(pixels.height, missing ? make_shader() : BandShader(), progress, bands, wanted,
-             [&](int b, const TruthBand& band) { Write(part_file(b), key, pixels.width, rows(b), band); });
+             [&](int b, const TruthBand& band) {
+               WriteCacheEntry(cache_folder, part_name(b), Encode(pixels.width, rows(b), band));
+             });
   TruthBand whole = JoinBands(std::move(bands));
   whole.seconds =
       reused_seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  Write(whole_file, key, pixels.width, pixels.height, whole);
-  std::filesystem::remove_all(parts, ignored);
+  WriteCacheEntry(cache_folder, whole_name, Encode(pixels.width, pixels.height, whole));
+  std::error_code ignored;
+  std::filesystem::remove_all(cache_folder / parts, ignored);
   return {std::move(whole), false};
 }
 

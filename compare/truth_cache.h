@@ -11,9 +11,7 @@ namespace arealab {
 
 // The truth of the scene's lights on these pixels, from the folder where it is there, else computed and
 // stored. The name of an entry is a hash of all that the truth depends on (lights, pixels, tolerance, the
-// integrator's version). Entries are written under another name and renamed; one that is short, damaged or
-// foreign is computed again. A folder that cannot be written to costs the storing, not the truth. `cached`
-// says whether everything was there.
+// integrator's version); see compare/cache_file.h for how it is kept. `cached` says whether everything was there.
 Truth CachedTruth(const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options,
                   const std::filesystem::path& cache_folder);
 

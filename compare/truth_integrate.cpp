@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -727,8 +726,8 @@ bool MakeOutline(const ShadingPoint& point, const Light& light, Outline& outline
     } else {
       count = light.corners.size();
       glm::dvec3 x = local(light.axis_x), y = local(light.axis_y);
-      std::ranges::transform(light.corners | std::views::reverse, corners.begin(),
-                             [&](const glm::dvec2& c) { return center + x * c.x + y * c.y; });
+      std::transform(light.corners.rbegin(), light.corners.rend(), corners.begin(),
+                     [&](const glm::dvec2& c) { return center + x * c.x + y * c.y; });
     }
     if (height < 0.0) {
       std::reverse(corners.begin() + 1, corners.begin() + static_cast<std::ptrdiff_t>(count));

@@ -12,6 +12,7 @@
 
 #include "glsl/fit_cell.h"
 #include "scenes/error.h"
+#include "scenes/write_image.h"
 
 namespace arealab {
 namespace {
@@ -193,22 +194,10 @@ constexpr std::array kNormNames{"middle", "none", "last"};
 constexpr std::array kAxisNames{"sqrt", "cos", "theta"};
 constexpr std::array kKinds{FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished};
 
-// Complete or not at all: into a temporary file beside it, then renamed.
 void WriteExr(const std::filesystem::path& file, int size, int channels, const float* values) {
-  std::filesystem::path part = file;
-  part.replace_extension(".part.exr");
   OIIO::ImageSpec spec(size, size, channels, OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
-  spec.attribute("DateTime",
-                 "");  // else the writer adds the time of day: the same numbers must give the same bytes
-  const auto output = OIIO::ImageOutput::create(part.string());
-  if (!output || !output->open(part.string(), spec) || !output->write_image(OIIO::TypeDesc::FLOAT, values) ||
-      !output->close())
-    throw InputError(fmt::format("{}: cannot be written; expected a folder that can", file.string()));
-  std::error_code error;
-  std::filesystem::rename(part, file, error);
-  if (error)
-    throw InputError(fmt::format("{}: {}; expected a writable file", file.string(), error.message()));
+  WriteImageFile(file, spec, values);
 }
 
 std::vector<glm::vec4> ReadExr(const std::filesystem::path& file, int* size) {

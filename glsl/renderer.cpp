@@ -13,6 +13,7 @@
 #include "glsl/light_block.h"
 #include "glsl/light_textures.h"
 #include "glsl/program.h"
+#include "glsl/shading_watch.h"
 #include "glsl/table.h"
 #include "scenes/error.h"
 
@@ -52,6 +53,10 @@ struct Renderer::Impl {
   GLuint LoadTable(const Variant& variant, const arealab::Table& table);
   void SetKnobs(const Pass& pass, const Variant& variant, const std::map<std::string, double>& knobs) const;
   const Pass& KeptPass(const Variant& variant, Precision precision);
+  ShadingWatch Watch(const Variant& variant) const {
+    return {library.DisplayPath("techniques/" + variant.technique->name + ".glsl"),
+            static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y)};
+  }
   void DrawPass(const Pass& pass) { DrawPass(pass, 0, size.y); }
   void DrawPass(const Pass& pass, int first_row, int rows);
   void Black() const;
@@ -135,7 +140,8 @@ Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision 
 void Renderer::Impl::SetKnobs(const Pass& pass, const Variant& variant,
                               const std::map<std::string, double>& knobs) const {
   const auto& known = variant.technique->knobs;
-  for (const auto& [name, value] : knobs) {
+  for (const auto& set : knobs) {
+    const std::string& name = set.first;
     if (std::none_of(known.begin(), known.end(), [&](const Knob& knob) { return knob.name == name; })) {
       std::string names;
       for (const Knob& knob : known) names += (names.empty() ? "" : ", ") + knob.name;
@@ -249,6 +255,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
 
 RadianceImage Renderer::Shade(const Variant& variant, Precision precision,
                               const std::map<std::string, double>& knobs) {
+  const ShadingWatch watch = impl_->Watch(variant);
   if (impl_->light_count == 0) {
     impl_->Black();
   } else {
@@ -268,6 +275,7 @@ void Renderer::ShadeRows(const Variant& variant, const std::map<std::string, dou
              std::vector<glm::vec3>(pixels, glm::vec3(0.0f))};
   }
   if (impl_->light_count == 0) return;
+  const ShadingWatch watch = impl_->Watch(variant);
   const Impl::Pass& pass = impl_->KeptPass(variant, Precision::kFloat);
   impl_->SetKnobs(pass, variant, knobs);
   impl_->DrawPass(pass, first, count);
@@ -276,6 +284,7 @@ void Renderer::ShadeRows(const Variant& variant, const std::map<std::string, dou
 }
 
 void Renderer::Draw(const Variant& variant, Precision precision, const std::map<std::string, double>& knobs) {
+  const ShadingWatch watch = impl_->Watch(variant);
   if (impl_->light_count == 0) {
     impl_->Black();
   } else {

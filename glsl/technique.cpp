@@ -88,7 +88,9 @@ class HeaderReader {
   }
 
  private:
-  [[noreturn]] void Fail(int line, const std::string& wrong, const std::string& expected) const {
+  // One line whatever the header holds.
+  [[noreturn]] void Fail(int line, std::string wrong, const std::string& expected) const {
+    std::replace_if(wrong.begin(), wrong.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
     throw InputError(fmt::format("{}:{}: {}; expected {}", path_, line, wrong, expected));
   }
 
@@ -506,6 +508,10 @@ std::vector<std::string> Laws() {
   return laws;
 }
 
+Technique ReadTechnique(const ShaderLibrary& library, const std::string& name, std::string_view text) {
+  return HeaderReader(library, "techniques/" + name + ".glsl").Read(name, text);
+}
+
 std::vector<Technique> LoadTechniques(const ShaderLibrary& library) {
   constexpr std::string_view kFolder = "techniques/";
   constexpr std::string_view kSuffix = ".glsl";
@@ -514,7 +520,7 @@ std::vector<Technique> LoadTechniques(const ShaderLibrary& library) {
     if (!file.ends_with(kSuffix)) continue;
     const std::string name = file.substr(kFolder.size(), file.size() - kFolder.size() - kSuffix.size());
     const std::optional<std::string> text = library.Find(file);
-    if (text) techniques.push_back(HeaderReader(library, file).Read(name, *text));
+    if (text) techniques.push_back(ReadTechnique(library, name, *text));
   }
   std::sort(techniques.begin(), techniques.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });

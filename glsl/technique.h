@@ -80,6 +80,9 @@ struct Technique {
 // "rotation", nor does turning everything; "radiance", twice the radiance is twice the picture, to the bit.
 std::vector<std::string> Laws();
 
+// What `text`, the file techniques/NAME.glsl, says of itself. Throws InputError with file and line.
+Technique ReadTechnique(const ShaderLibrary& library, const std::string& name, std::string_view text);
+
 // All techniques of the library, sorted by name. A wrong header throws InputError with file and line.
 std::vector<Technique> LoadTechniques(const ShaderLibrary& library);
 

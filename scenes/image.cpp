@@ -2,11 +2,14 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include "scenes/error.h"
 
@@ -20,21 +23,43 @@ float LinearFromSrgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
+// While one lives nothing reaches standard error: libpng writes there what it finds amiss, beside the line that we make of it.
+class SilentErrors {
+ public:
+  SilentErrors() : lock_(Mutex()), kept_(dup(STDERR_FILENO)) {
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) close(nowhere);
+  }
+  ~SilentErrors() {
+    if (kept_ >= 0) dup2(kept_, STDERR_FILENO);
+    if (kept_ >= 0) close(kept_);
+  }
+  SilentErrors(const SilentErrors&) = delete;
+  SilentErrors& operator=(const SilentErrors&) = delete;
+
+ private:
+  static std::mutex& Mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::mutex> lock_;
+  int kept_;
+};
+
 std::shared_ptr<const Image> Read(const std::string& file, const std::string& name, ImageUse use,
                                   OIIO::Filesystem::IOProxy* memory) {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // glTF and artists keep colour and alpha apart
+  const SilentErrors silent;
   std::unique_ptr<OIIO::ImageInput> input;
-  if (memory) {
-    // OpenImageIO 2.4's one-step open looks for the file on disk in spite of the memory that it is given.
-    input = OIIO::ImageInput::create(file, false, nullptr, memory);
-    OIIO::ImageSpec opened;
-    if (input && !(input->set_ioproxy(memory) && input->open(file, opened, config))) {
-      input->geterror();  // an unread message would be printed
-      input.reset();
-    }
-  } else {
-    input = OIIO::ImageInput::open(file, &config);
+  // The reader that the suffix names: the one-step open would offer a damaged file to those of every other format, and looks for
+  // it on disk in spite of the memory that it is given (OpenImageIO 2.4).
+  input = OIIO::ImageInput::create(file, false, nullptr, memory);
+  OIIO::ImageSpec opened;
+  if (input && ((memory && !input->set_ioproxy(memory)) || !input->open(file, opened, config))) {
+    input->geterror();  // an unread message would be printed
+    input.reset();
   }
   if (!input) {
     OIIO::geterror();  // clears the library's pending message
@@ -52,8 +77,9 @@ std::shared_ptr<const Image> Read(const std::string& file, const std::string& na
   }
   const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   const int channels = std::min(spec.nchannels, 4);
-  std::vector<float> values(count * static_cast<std::size_t>(channels));
-  if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
+  // Not touched before it is read: a header's sides may be far larger than what follows it.
+  const auto values = std::make_unique_for_overwrite<float[]>(count * static_cast<std::size_t>(channels));
+  if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.get())) {
     input->geterror();
     throw InputError(fmt::format("'{}' is cut short or damaged; expected a whole image", name));
   }

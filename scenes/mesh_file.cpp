@@ -1,5 +1,6 @@
 #include "scenes/mesh_file.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
 #include <assimp/config.h>
@@ -9,13 +10,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <set>
+#include <stdexcept>
 
 #include "scenes/error.h"
 #include "scenes/image.h"
+#include "scenes/in_child.h"
 
 namespace arealab {
 namespace {
@@ -33,6 +41,43 @@ bool IsInside(const fs::path& file, const fs::path& root) {
   return end == real_root.end();
 }
 
+// A file's bytes. Some of assimp's readers never notice that a file is cut short, and read on at its end for ever (PLY within its
+// header): here that is an exception.
+class FileBytes : public Assimp::IOStream {
+ public:
+  explicit FileBytes(std::string bytes) : bytes_(std::move(bytes)) {}
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    const std::size_t left = bytes_.size() - at_, wanted = size == 0 ? 0 : std::min(count, left / size + 1) * size;
+    const std::size_t taken = std::min(wanted, left);
+    if (taken == 0) {
+      constexpr int kMostVain = 1000;
+      if (++vain_ > kMostVain) throw std::runtime_error("it is cut short");
+      return 0;
+    }
+    vain_ = 0;
+    std::memcpy(buffer, bytes_.data() + at_, taken);
+    at_ += taken;
+    return taken / size;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+    const std::size_t to = from + offset;  // backwards where the sum wraps around
+    if (to > bytes_.size()) return aiReturn_FAILURE;
+    at_ = to;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return at_; }
+  std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+  int vain_ = 0;  // reads in a row that found nothing
+};
+
 // Opens files inside one folder only, so that a mesh cannot name a buffer or a material library elsewhere.
 class FolderFiles : public Assimp::DefaultIOSystem {
  public:
@@ -43,10 +88,16 @@ class FolderFiles : public Assimp::DefaultIOSystem {
   }
 
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    if (IsInside(file, root_)) return DefaultIOSystem::Open(file, mode);
+    if (IsInside(file, root_)) {
+      std::ifstream in(file, std::ios::binary);
+      if (!in || mode[0] != 'r') return nullptr;
+      return new FileBytes(std::string(std::istreambuf_iterator<char>(in), {}));  // the importer deletes it
+    }
     if (!refused_) refused_ = fs::path(file).filename().string();
     return nullptr;
   }
+
+  void Close(Assimp::IOStream* file) override { delete file; }
 
   const std::optional<std::string>& refused() const { return refused_; }
 
@@ -223,11 +274,80 @@ Material MetalRough(const aiMaterial& source, Textures& textures) {
   return material;
 }
 
+template <typename Refusal>
+void CheckNode(const aiNode& node, unsigned meshes, const Refusal& refuse) {
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    if (node.mMeshes[i] >= meshes) throw refuse("mesh");
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) CheckNode(*node.mChildren[i], meshes, refuse);
+}
+
 std::string Extension(const fs::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
+}
+
+// The file as assimp reads it, checked, smoothed and in assimp's own form; empty where it has no triangles.
+std::string ReadInChild(const fs::path& file, const fs::path& root) {
+  const std::string name = file.filename().string(), extension = Extension(file);
+  Assimp::Importer importer;
+  // A damaged file would be offered to the readers of every other format.
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    Assimp::BaseImporter* reader = importer.GetImporter(i);
+    std::set<std::string> extensions;
+    reader->GetExtensionList(extensions);
+    if (extensions.contains(extension.substr(1))) continue;
+    importer.UnregisterLoader(reader);
+    delete reader;
+  }
+  auto* files = new FolderFiles(root);
+  importer.SetIOHandler(files);  // the importer deletes it
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  if (files->refused()) {
+    throw InputError(
+        fmt::format("'{}' refers to '{}', which leaves the scene's folder; expected files inside it", name,
+                    *files->refused()));
+  }
+  if (!scene || !scene->mRootNode) {
+    std::string why = importer.GetErrorString();
+    if (const auto at = why.find(file.string()); at != std::string::npos)
+      why.replace(at, file.string().size(), name);
+    std::replace_if(why.begin(), why.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    throw InputError(
+        fmt::format("'{}' cannot be read as a mesh ({}); expected a valid {} file", name, why, extension));
+  }
+  // Before anything is derived from them: smoothing sorts positions, and assimp looks up what indices name without a look at them.
+  const auto refuse_index = [&](const char* what) -> InputError {
+    return InputError(fmt::format("'{}' refers to a {} that it does not hold; expected indices below their count", name, what));
+  };
+  CheckNode(*scene->mRootNode, scene->mNumMeshes, refuse_index);
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene->mMeshes[m];
+    if (mesh.mMaterialIndex >= scene->mNumMaterials) throw refuse_index("material");
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k) {
+        if (mesh.mFaces[f].mIndices[k] >= mesh.mNumVertices) throw refuse_index("vertex");
+      }
+    }
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      if (IsFinite(ToGlm(mesh.mVertices[i]))) continue;
+      throw InputError(
+          fmt::format("vertex {} of '{}' is not finite; expected finite positions", i + 1, name));
+    }
+  }
+  if (scene->mNumMeshes > 0) {
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
+                                         aiProcess_GenSmoothNormals | aiProcess_CalcTangentSpace |
+                                         aiProcess_JoinIdenticalVertices);
+  }
+  if (!scene || scene->mNumMeshes == 0) return "";
+  Assimp::Exporter exporter;
+  const aiExportDataBlob* blob = exporter.ExportToBlob(scene, "assbin");
+  if (!blob) throw InputError(fmt::format("'{}' cannot be handed on ({}); expected a valid {} file", name, exporter.GetErrorString(), extension));
+  return {static_cast<const char*>(blob->data), blob->size};
 }
 
 }  // namespace
@@ -263,41 +383,15 @@ MeshFile LoadMeshFile(const fs::path& file, const fs::path& root) {
                     ".3ds",
                     name));
   }
+  // assimp's readers crash on many a damaged file: one that does takes its own process with it.
+  const std::string checked = InChild([&] { return ReadInChild(file, root); }, 60, fmt::format("'{}' cannot be read as a mesh", name),
+                                      fmt::format("a valid {} file", extension));
   Assimp::Importer importer;
-  auto* files = new FolderFiles(root);
-  importer.SetIOHandler(files);  // the importer deletes it
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
-  if (files->refused()) {
-    throw InputError(
-        fmt::format("'{}' refers to '{}', which leaves the scene's folder; expected files inside it", name,
-                    *files->refused()));
-  }
-  if (!scene || !scene->mRootNode) {
-    std::string why = importer.GetErrorString();
-    if (const auto at = why.find(file.string()); at != std::string::npos)
-      why.replace(at, file.string().size(), name);
-    throw InputError(
-        fmt::format("'{}' cannot be read as a mesh ({}); expected a valid {} file", name, why, extension));
-  }
-  // Before anything is derived from them, since smoothing sorts positions.
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene->mMeshes[m];
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-      if (IsFinite(ToGlm(mesh.mVertices[i]))) continue;
-      throw InputError(
-          fmt::format("vertex {} of '{}' is not finite; expected finite positions", i + 1, name));
-    }
-  }
-  if (scene->mNumMeshes > 0) {
-    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
-                                         aiProcess_GenSmoothNormals | aiProcess_CalcTangentSpace |
-                                         aiProcess_JoinIdenticalVertices);
-  }
+  const aiScene* scene = checked.empty() ? nullptr : importer.ReadFileFromMemory(checked.data(), checked.size(), 0, "assbin");
   MeshFile result;
   result.metal_rough = extension == ".gltf" || extension == ".glb";
   result.has_texture_coordinates = true;
-  if (scene && scene->mNumMeshes > 0) AddNode(result, *scene, *scene->mRootNode, glm::dmat4(1.0));
+  if (scene && scene->mRootNode) AddNode(result, *scene, *scene->mRootNode, glm::dmat4(1.0));
   if (result.meshes.empty()) {
     throw InputError(fmt::format("'{}' has no triangles; expected at least one with an area", name));
   }

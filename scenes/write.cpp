@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {
@@ -428,24 +427,7 @@ void SaveScene(const Scene& before, const Scene& after) {
     throw InputError(fmt::format("{}: not saved, since {} would not read back as it is; expected the file as it was when it was opened",
                                  file.string(), *lost));
   }
-  WriteSceneText(file, text);
-}
-
-void WriteSceneText(const fs::path& file, const std::string& text) {
-  const fs::path temporary = file.string() + fmt::format(".{}.tmp", getpid());
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << text;
-    stream.flush();
-    if (!stream) {
-      std::error_code ignored;
-      fs::remove(temporary, ignored);
-      throw InputError(fmt::format("{}: cannot be written; expected a folder that may be written to", file.string()));
-    }
-  }
-  std::error_code error;
-  fs::rename(temporary, file, error);
-  if (error) throw InputError(fmt::format("{}: {}; expected a file that may be replaced", file.string(), error.message()));
+  ReplaceFile(file, text);
 }
 
 }  // namespace arealab

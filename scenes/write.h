@@ -18,7 +18,4 @@ std::string EditedText(const std::string& text, const Scene& before, const Scene
 // holds does not read as `after`, since someone else has edited it, or where it cannot be written.
 void SaveScene(const Scene& before, const Scene& after);
 
-// Replaces a file's bytes in one step. Throws InputError where it cannot be written.
-void WriteSceneText(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace arealab

@@ -11,6 +11,7 @@
 
 #include "compare/aperture_cache.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 #include "scenes/write.h"
 
 namespace arealab {
@@ -101,7 +102,7 @@ Scene Session::Saved() const {
 
 void Session::Save() {
   Scene saved = Saved();
-  if (!text_.empty()) WriteSceneText(scene.file, text_);
+  if (!text_.empty()) ReplaceFile(scene.file, text_);
   text_.clear();
   SaveScene(on_disk_, saved);
   on_disk_ = std::move(saved);
@@ -139,7 +140,7 @@ void Session::Autosave() {
   }
   fs::create_directories(file.parent_path(), error);
   try {
-    WriteSceneText(file, EditedText(text_.empty() ? ReadSceneText(scene.file) : text_, on_disk_, Saved()));
+    ReplaceFile(file, EditedText(text_.empty() ? ReadSceneText(scene.file) : text_, on_disk_, Saved()));
   } catch (const InputError&) {
     // A folder that cannot be written to takes away the safety net, not the work.
   }

@@ -1,69 +1,12 @@
-// The program as a person or a build server runs it: exit status, one-line errors, nothing half-written.
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
+// The program as a person or a build server runs it: exit status, one-line errors.
+#include "tests/app/program.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <thread>
-
+namespace arealab::cli_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int status = -1;
-  std::string out;  // standard output and error together
-};
-
-Outcome Arealab(const std::string& arguments) {
-  const std::string command = std::string(AREALAB_PROGRAM) + " " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  Outcome outcome;
-  char buffer[4096];
-  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.out.append(buffer, n);
-  const int raw = pclose(pipe);
-  outcome.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
-  return outcome;
-}
-
-// One line, status 2, and it says `part`.
-void ExpectRefused(const Outcome& outcome, const std::string& part) {
-  EXPECT_EQ(outcome.status, 2) << outcome.out;
-  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
-  EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
-}
-
-class Cli : public testing::Test {
- protected:
-  Cli() {
-    folder_ = fs::temp_directory_path() / ("arealab_cli_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  ~Cli() override { fs::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string Cache() const { return " --cache " + Path("cache"); }
-
-  std::string WriteFile(const std::string& name, const std::string& text) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
-    return Path(name);
-  }
-
-  nlohmann::json ReadJson(const std::string& name) const {
-    std::ifstream in(folder_ / name);
-    return nlohmann::json::parse(in);
-  }
-
-  fs::path folder_;
-};
+class Cli : public ProgramTest {};
 
 TEST_F(Cli, ListNamesTechniquesWithWhatEachSupportsAndScenes) {
   const Outcome text = Arealab("list");
@@ -164,32 +107,6 @@ TEST_F(Cli, ATechniqueIsOneFileTriedLive) {
   EXPECT_FALSE(fs::exists(folder_ / "out2"));
 }
 
-// Killed at moments spread over the run, it never leaves a half-written report, and the next run finishes.
-TEST_F(Cli, KilledAtAnyMomentNothingIsHalfWritten) {
-  const std::string cache = Path("cache"), out = Path("out");
-  for (const int milliseconds : {30, 120, 250, 400, 600, 900}) {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      freopen("/dev/null", "w", stdout);
-      freopen("/dev/null", "w", stderr);
-      execl(AREALAB_PROGRAM, "arealab", "compare", "gloss", "--size", "96x96", "--technique", "ltc", "--technique", "point",
-            "--out", out.c_str(), "--cache", cache.c_str(), static_cast<char*>(nullptr));
-      _exit(127);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    if (fs::exists(out)) {
-      EXPECT_NO_THROW(ReadJson("out/results.json"));
-      EXPECT_TRUE(fs::exists(folder_ / "out/index.html"));
-    }
-  }
-  const Outcome last = Arealab("compare gloss --size 96x96 --technique ltc --technique point --out " + out + " --cache " + cache);
-  EXPECT_EQ(last.status, 0) << last.out;
-  EXPECT_EQ(ReadJson("out/results.json").at("scenes").size(), 1u);
-}
-
 TEST_F(Cli, ASweepInPartsIsTheWholeSweep) {
   const std::string rest = " --values 0.3,0.6,0.9 --technique point --technique ltc --size 32x32 --seconds 0 --context osmesa" + Cache();
   for (const std::string part : {"1/2", "2/2"}) {
@@ -234,3 +151,4 @@ TEST_F(Cli, MoreCyclesThanStoredAreStatusOne) {
 }
 
 }  // namespace
+}  // namespace arealab::cli_test

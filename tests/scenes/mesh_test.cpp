@@ -230,6 +230,21 @@ TEST_F(MeshTest, PlyIsRead) {
   EXPECT_EQ(scene.meshes.at(0).vertices.at(0).normal, glm::vec3(0, 0, 1));
 }
 
+// Each once hung or crashed the reader: found by tests/fuzz/.
+TEST_F(MeshTest, DamagedFilesAreRefused) {
+  const std::string header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                             "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto error = [&](const std::string& bytes) {
+    Write("bad.ply", bytes);
+    return Error(kCamera + kMaterial + kLight + "[[surface]]\ntype = \"mesh\"\nfile = \"bad.ply\"\nmaterial = \"grey\"\n");
+  };
+  EXPECT_THAT(error(header.substr(0, 40)), testing::HasSubstr("'bad.ply' cannot be read as a mesh"));
+  EXPECT_THAT(error(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 999999\n"), testing::HasSubstr("'bad.ply' refers to a vertex that it does not hold"));
+  EXPECT_THAT(error("ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                    "element face 1\nproperty list uchar int vertex_indicsnee\n_dheader\n" + std::string(49, '\1')),
+              testing::HasSubstr("'bad.ply' cannot be read as a mesh"));
+}
+
 TEST_F(MeshTest, ThreeDsOfTheDebianPackageIsRead) {
   const Scene scene =
       LoadSurface("file = \"glmark2-data:models/horse.3ds\"\nheight = 1\nmaterial = \"grey\"\n");

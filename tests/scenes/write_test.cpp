@@ -9,6 +9,7 @@
 #include <string>
 
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 #include "tests/scenes/scene_folder.h"
 
 namespace arealab::write_test {
@@ -245,7 +246,7 @@ TEST(SceneWriter, MaterialsExposureCamera) {
 
 TEST(SceneWriter, AFileOfSomeoneElseIsNotOverwritten) {
   const auto file = std::filesystem::temp_directory_path() / "arealab_write_test.toml";
-  WriteSceneText(file, kText);
+  ReplaceFile(file, kText);
   const Scene before = LoadScene(file);
   Scene after = before;
   after.lights[1].half_size = glm::dvec2(0.25);
@@ -253,7 +254,7 @@ TEST(SceneWriter, AFileOfSomeoneElseIsNotOverwritten) {
   EXPECT_EQ(LoadScene(file).lights[1].half_size.x, 0.25);
   std::string other = ReadSceneText(file);
   other.replace(other.find("flux = 20"), 9, "flux = 99");
-  WriteSceneText(file, other);
+  ReplaceFile(file, other);
   EXPECT_THROW(SaveScene(before, after), InputError);
   EXPECT_EQ(ReadSceneText(file), other);
   std::filesystem::remove(file);

@@ -1,0 +1,5 @@
+/*---
+summary = "s"
+citation = t
+author_note = "n"
+---*/
