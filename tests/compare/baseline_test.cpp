@@ -74,8 +74,17 @@ TEST_F(Baseline, OtherCompilersOrScenesAreNotCompared) {
 }
 
 TEST_F(Baseline, AFileThatIsNoneAndAnotherSizeAreRefused) {
-  EXPECT_THAT([&] { CompareWithBaseline(Sample(), folder_.Write("a.json", "{}")); },
-              ThrowsMessage<InputError>(HasSubstr("expected its results.json")));
+  const auto against = [&](const std::string& text) { CompareWithBaseline(Sample(), folder_.Write("a.json", text)); };
+  const std::string expected = "expected a results.json", scenes = "{\"schema\": 1, \"scenes\": ";
+  for (const std::string& text : {std::string("{}"), std::string("[1]"), std::string("{\n\n,"), scenes + "1}", scenes + "[1]}", scenes + "[1e999]}",
+                                  scenes + std::string(100000, '[')}) {
+    EXPECT_THAT([&] { against(text); }, ThrowsMessage<InputError>(HasSubstr(expected))) << text.substr(0, 50);
+  }
+  EXPECT_THAT([&] { against("{\n\n,"); }, ThrowsMessage<InputError>(HasSubstr("a.json:3: not JSON")));
+  std::string interval = ResultsJson(Sample());
+  const std::size_t at = interval.find("\"ratio_interval\": [") + std::string("\"ratio_interval\": [").size();
+  interval.erase(at, interval.find(']', at) - at);
+  against(interval);  // an interval of no numbers is none
   Results now = Sample();
   now.scenes[0].width = 64;
   EXPECT_THAT([&] { Against(now); }, ThrowsMessage<InputError>(HasSubstr("expected --size 32x24")));

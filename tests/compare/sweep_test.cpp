@@ -76,7 +76,7 @@ TEST(Sweep, PartsThatDoNotFitAreRefused) {
   std::string other = Part({1});
   for (std::size_t at; (at = other.find("\"lights\"")) != std::string::npos;) other.replace(at, 8, "\"pixels\"");
   EXPECT_THAT([&] { WriteSweep({Part({2}), other}, folder.path() / "out"); }, ThrowsMessage<InputError>(HasSubstr("expected one axis")));
-  EXPECT_THAT([&] { WriteSweep({"{}"}, folder.path() / "out"); }, ThrowsMessage<InputError>(HasSubstr("results.json of `arealab sweep`")));
+  EXPECT_THAT([&] { WriteSweep({"{}"}, folder.path() / "out"); }, ThrowsMessage<InputError>(HasSubstr("`arealab sweep`")));
 }
 
 }  // namespace
