@@ -21,6 +21,7 @@ struct RenderArguments {
   double exposure = 0.0;
   double tolerance = 1e-4;
   bool fp64 = false;
+  bool fp16 = false;
 };
 
 // "NAME=VALUE" of each --set, checked against what the technique declares.
@@ -90,7 +91,10 @@ void RunRender(const RenderArguments& arguments) {
       image = CachedShadowedTruth(scene, pixels, image, options, shadow_options, arguments.common.CacheFolder()).radiance;
     }
   } else {
-    image = renderer.Shade(variant, arguments.fp64 ? Precision::kDouble : Precision::kFloat, knobs);
+    const Precision precision = arguments.fp64   ? Precision::kDouble
+                                : arguments.fp16 ? Precision::kHalf
+                                                 : Precision::kFloat;
+    image = renderer.Shade(variant, precision, knobs);
   }
   if (out.extension() == ".exr") {
     WriteExr(out, image);
@@ -113,7 +117,8 @@ void AddRender(CLI::App& app, int& /*status*/) {
   command->add_option("--tolerance", arguments->tolerance, "of the truth, relative")
       ->capture_default_str()
       ->check(CLI::Range(1e-8, 1e-1));
-  command->add_flag("--fp64", arguments->fp64, "the same shader text in double precision");
+  CLI::Option* fp64 = command->add_flag("--fp64", arguments->fp64, "the same shader text in double precision");
+  command->add_flag("--fp16", arguments->fp16, "the same with every result rounded to a half float, as mediump may be")->excludes(fp64);
   command->add_option("--cache", arguments->common.cache, "folder of truths already computed (default: the user's cache)");
   arguments->common.AddContext(*command);
   arguments->common.AddSize(*command);

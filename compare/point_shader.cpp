@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <map>
 #include <optional>
 
 #include "glsl/effects.h"
+#include "glsl/fp16_rewrite.h"
 #include "glsl/gl_objects.h"
 #include "glsl/light_block.h"
 #include "glsl/program.h"
@@ -24,10 +26,6 @@ constexpr int kColumns = 256;
 constexpr int kMostRows = 512;             // of pixels at a time: 23 MB of texels
 constexpr int kCaseRows = kLightRows + 3 + kCornerRows;  // CASE_ROWS of glsl/points.frag
 constexpr GLuint kFirstTableUnit = 3, kCasesUnit = 15;
-
-glm::dvec3 AsFloats(const glm::dvec3& v) {
-  return glm::dvec3(glm::vec3(v));
-}
 
 // Everything on but shapes that no case has, the other side of lights, the loop, apertures and the sky.
 EffectDefines EffectsOf(std::span<const PointCase> cases) {
@@ -54,16 +52,34 @@ std::array<glm::vec4, kCaseRows> Texels(const PointCase& c) {
 
 }  // namespace
 
+namespace {
+
+std::vector<double*> NumbersOf(PointCase& c) {
+  std::vector<double*> numbers{&c.roughness, &c.f0, &c.radiance, &c.half_size.x, &c.half_size.y};
+  for (glm::dvec3* v : {&c.position, &c.normal, &c.to_view, &c.center, &c.axis_x, &c.axis_y, &c.light_normal})
+    numbers.insert(numbers.end(), {&v->x, &v->y, &v->z});
+  for (glm::dvec2& corner : c.corners) numbers.insert(numbers.end(), {&corner.x, &corner.y});
+  return numbers;
+}
+
+}  // namespace
+
 PointCase PointCase::Rounded() const {
   PointCase c = *this;
-  for (glm::dvec3* v :
-       {&c.position, &c.normal, &c.to_view, &c.center, &c.axis_x, &c.axis_y, &c.light_normal}) {
-    *v = AsFloats(*v);
-  }
-  c.half_size = glm::dvec2(glm::vec2(half_size));
-  for (glm::dvec2& corner : c.corners) corner = glm::dvec2(glm::vec2(corner));
-  for (double* x : {&c.roughness, &c.f0, &c.radiance}) *x = static_cast<float>(*x);
+  for (double* number : NumbersOf(c)) *number = static_cast<float>(*number);
   return c;
+}
+
+std::optional<PointCase> PointCase::AsHalves() const {
+  PointCase c = *this;
+  bool finite = true;
+  for (double* number : NumbersOf(c)) {
+    *number = RoundedToHalf(*number);
+    finite = finite && std::isfinite(*number);
+  }
+  const bool lost = (c.half_size.x == 0.0) != (half_size.x == 0.0) || (c.half_size.y == 0.0) != (half_size.y == 0.0) ||
+                    (c.center == c.position) != (center == position) || (c.radiance == 0.0) != (radiance == 0.0);
+  return finite && !lost ? std::optional(c) : std::nullopt;
 }
 
 Light PointCase::Light() const {

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct PointCase {
   std::vector<glm::dvec2> corners = {};  // of a polygon, as Light::corners
 
   PointCase Rounded() const;  // as the GL gets it: every number the nearest float
+  // Every number the nearest half float (glsl/fp16_rewrite.h); nothing where these are another light: one is infinite, or a
+  // size, the light's distance or its radiance becomes 0.
+  std::optional<PointCase> AsHalves() const;
   arealab::Light Light() const;
   LightIntegrals Truth(double tolerance = 1e-4, Brdf brdf = Brdf::kGgx) const;  // for radiance 1
 };

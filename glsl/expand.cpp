@@ -9,6 +9,7 @@
 #include <set>
 #include <string_view>
 
+#include "glsl/fp16_rewrite.h"
 #include "glsl/fp64_rewrite.h"
 #include "glsl/nearest.h"
 #include "glsl/words.h"
@@ -67,8 +68,10 @@ class Expander {
 
   ExpandedSource Run(const std::string& main, const std::vector<std::pair<std::string, int>>& effects) {
     EmitPrologue(effects);
-    if (precision_ == Precision::kDouble)
-      Include("fp64_math.glsl", fmt::format("{}:1", library_.DisplayPath(main)));
+    if (precision_ != Precision::kFloat) {
+      Include(precision_ == Precision::kDouble ? "fp64_math.glsl" : "fp16_math.glsl",
+              fmt::format("{}:1", library_.DisplayPath(main)));
+    }
     if (!library_.Find(main))
       throw InputError(fmt::format("{}: no such shader; expected a file under glsl/", main));
     Include(main, "");
@@ -121,7 +124,9 @@ class Expander {
   // The library's name for what an #include says.
   std::string Resolve(const std::string& name) const {
     if (name == "platform") {
-      return precision_ == Precision::kDouble ? "platform_double.glsl" : "platform_float.glsl";
+      return precision_ == Precision::kDouble ? "platform_double.glsl"
+             : precision_ == Precision::kHalf ? "platform_half.glsl"
+                                              : "platform_float.glsl";
     }
     if (name == "brdf" || name == "importance_cone") return fmt::format("{}/{}.glsl", name, Name(brdf_));
     if (!variant_.technique) return name;
@@ -163,9 +168,9 @@ class Expander {
     if (!text) FailUnknown(name, file, where);
     included_.insert(file);
     open_.push_back(file);
-    if (precision_ == Precision::kDouble && !file.starts_with("platform_") && !file.starts_with("fp64_")) {
-      *text = RewriteAsDouble(*text);
-    }
+    const bool rewritten = !file.starts_with("platform_") && !file.starts_with("fp64_") && !file.starts_with("fp16_");
+    if (rewritten && precision_ == Precision::kDouble) *text = RewriteAsDouble(*text);
+    if (rewritten && precision_ == Precision::kHalf) *text = RewriteAsHalf(*text);
     EmitFile(*text, library_.DisplayPath(file));
     open_.pop_back();
   }

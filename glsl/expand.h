@@ -11,7 +11,8 @@
 
 namespace arealab {
 
-enum class Precision { kFloat, kDouble };  // kDouble: the same text in fp64 (double, dvec, literals with lf)
+// kDouble: the same text in fp64 (glsl/fp64_rewrite.h). kHalf: with every result rounded to a half float (glsl/fp16_rewrite.h).
+enum class Precision { kFloat, kDouble, kHalf };
 
 // The file of lines that the host writes: they have no author.
 inline constexpr std::string_view kHostFile = "the host's prologue";
@@ -29,7 +30,7 @@ struct ExpandedSource {
 };
 
 // Expands `main` ("lighting.frag"): `#include "technique"` is the variant's file, `#include "OPTION"` the chosen file
-// of that option, `#include "platform"` glsl/platform_float.glsl or glsl/platform_double.glsl, `#include "brdf"` and "importance_cone" the scene's BRDF in glsl/brdf/, glsl/importance_cone/, any other a name in the
+// of that option, `#include "platform"` glsl/platform_float.glsl, platform_double or platform_half, `#include "brdf"` and "importance_cone" the scene's BRDF in glsl/brdf/, glsl/importance_cone/, any other a name in the
 // library.
 // Each file is included once; a cycle or an unknown include throws InputError with file and line.
 // `effects` are all EFFECT_* names with 0 or 1; they and the option defines head the text.

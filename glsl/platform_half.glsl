@@ -1,0 +1,36 @@
+#pragma once
+// How the shading text reads and writes when it computes in half floats: every input is the nearest one. Not rewritten by the expander.
+#include "platform_inputs.glsl"
+
+vec4 FetchPosition(ivec2 pixel) { return fp16(texelFetch(gbuffer_position, pixel, 0)); }
+vec4 FetchNormal(ivec2 pixel) { return fp16(texelFetch(gbuffer_normal, pixel, 0)); }
+vec4 FetchBaseColor(ivec2 pixel) { return fp16(texelFetch(gbuffer_base_color, pixel, 0)); }
+#if EFFECT_APERTURE
+vec4 FetchAperture(ivec2 pixel) { return fp16(texelFetch(gbuffer_aperture, pixel, 0)); }
+vec4 FetchFirstRegion(ivec2 pixel) { return fp16(texelFetch(gbuffer_first_region, pixel, 0)); }
+vec4 FetchSecondRegion(ivec2 pixel) { return fp16(texelFetch(gbuffer_second_region, pixel, 0)); }
+vec4 FetchBlocked(ivec2 pixel) { return fp16(texelFetch(gbuffer_blocked, pixel, 0)); }
+#endif
+vec3 ViewPosition() { return fp16(view_position); }
+#if EFFECT_SKY
+vec3 SkyInput() { return fp16(sky_radiance); }
+#endif
+vec4 LightRow(int light, int row) { return fp16(light_rows[light * LIGHT_ROWS + row]); }
+#if EFFECT_POLYGON
+vec4 CornerRow(int light, int row) { return fp16(corner_rows[light * CORNER_ROWS + row]); }
+#endif
+
+// Bilinear, clamped to the edge; texel (i, j)'s centre is uv = (i + ½, j + ½) / size. Samplers weigh as they do, and return half floats.
+vec4 SampleTable(sampler2D table, vec2 uv) { return fp16(textureLod(table, uv, 0.0)); }
+
+#if EFFECT_TEXTURED
+vec3 FetchLayer(sampler2DArray map, ivec3 texel, int level) { return fp16(texelFetch(map, texel, level).rgb); }
+
+// Trilinear, clamped to the edge; place: uv and layer.
+vec4 SampleLayer(sampler2DArray map, vec3 place, float level) { return fp16(textureLod(map, place, level)); }
+#endif
+
+void WriteRadiance(vec3 diffuse, vec3 specular) {
+  out_diffuse = vec4(diffuse, 1.0);
+  out_specular = vec4(specular, 1.0);
+}
