@@ -50,7 +50,12 @@ void PrintStressJson(const StressResult& result) {
                                  {"worst", Figure(family.worst)},
                                  {"backward_ulps", Figure(family.backward)},
                                  {"approximation", Figure(family.approximation)},
+                                 {"approximation_case", CaseLine(family.approximation_case)},
                                  {"half_tables", Figure(family.half_tables)},
+                                 {"fp16", {{"cases", family.fp16_cases},
+                                           {"nonfinite", family.fp16_nonfinite},
+                                           {"median", Figure(family.fp16_median)},
+                                           {"p999", Figure(family.fp16_p999)}}},
                                  {"cause", family.cause},
                                  {"failures", family.failures},
                                  {"case", CaseLine(family.worst_case)}});
@@ -69,24 +74,57 @@ void PrintStressJson(const StressResult& result) {
   fmt::print("{}\n", json.dump(2));
 }
 
+std::string Percent(std::int64_t part, std::int64_t whole) {
+  if (part == 0) return "0";
+  return fmt::format("{:.2g} %", 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(whole, 1)));
+}
+
+// Which technique bears half floats: those that are finite most often first, then by their ordinary error.
+void PrintLowerPrecision(const StressResult& result) {
+  struct Row {
+    const VariantStress* variant;
+    const FamilyResult* ordinary;
+  };
+  std::vector<Row> rows;
+  for (const VariantStress& variant : result.variants) {
+    const auto ordinary = std::ranges::find_if(
+        variant.families, [](const FamilyResult& f) { return f.family == &StressFamilies()[0]; });
+    if (ordinary != variant.families.end()) rows.push_back({&variant, &*ordinary});
+  }
+  std::ranges::stable_sort(rows, {}, [](const Row& row) {
+    return std::pair(row.ordinary->fp16_nonfinite, row.ordinary->fp16_p999);
+  });
+  fmt::print(
+      "\nlower precision, not judged: tables of half floats; fp16, the same text with every input and result a "
+      "half float (nearest, infinity above 65504, 0 below 6.1e-5)\n"
+      "  {:<24}{:>10}  {:>10}{:>10}{:>10}  {:>20}\n",
+      "", "half tab.", "fp16 nf.", "median", "p99.9", "nf. in all families");
+  for (const auto& [variant, ordinary] : rows) {
+    fmt::print("  {:<24}{:>10.2g}  {:>10}{:>10.2g}{:>10.2g}  {:>20}\n", variant->name, ordinary->half_tables,
+               Percent(ordinary->fp16_nonfinite, ordinary->fp16_cases), ordinary->fp16_median,
+               ordinary->fp16_p999, Percent(variant->fp16_nonfinite(), variant->fp16_cases()));
+  }
+}
+
 void PrintStress(const StressResult& result) {
   fmt::print(
       "{}; seed {}; rounding error relative to the larger of the value and the light's maximal "
       "contribution\n",
       result.renderer, result.seed);
   for (const VariantStress& variant : result.variants) {
-    std::int64_t cases = 0;
-    for (const FamilyResult& family : variant.families) cases += family.cases;
+    const std::int64_t cases = variant.cases();
     fmt::print("\n{}: {} cases, {:.1f} s, {:.0f} per second{}{}\n", variant.name, cases, variant.seconds,
                static_cast<double>(cases) / variant.seconds,
                variant.ideal.empty() ? "" : "; ideal: " + variant.ideal,
                variant.judged ? "" : "; shown, not judged");
-    fmt::print("  {:<14}{:>10}{:>7}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "family", "nonfinite", "strict",
-               "negative", "p99.9", "worst", "ulps", "approx.", "half tab.");
+    fmt::print("  {:<14}{:>10}{:>7}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>10}\n", "family", "nonfinite",
+               "strict", "negative", "p99.9", "worst", "ulps", "approx.", "half tab.", "fp16 nf.", "p99.9");
     for (const FamilyResult& family : variant.families) {
-      fmt::print("  {:<14}{:>10}{:>7}{:>9}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{}\n",
+      fmt::print("  {:<14}{:>10}{:>7}{:>9}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{:>10.2g}{:>9}{:>10}{}\n",
                  family.family->name, family.nonfinite, family.hidden, family.negative, family.p999,
                  family.worst, family.backward, family.approximation, family.half_tables,
+                 family.fp16_cases == 0 ? "–" : Percent(family.fp16_nonfinite, family.fp16_cases),
+                 family.fp16_cases == 0 ? "–" : fmt::format("{:.2g}", family.fp16_p999),
                  family.family->ill_conditioned ? "  *" : "");
       for (const std::string& failure : family.failures) fmt::print("    FAILS: {}\n", failure);
       if (!family.failures.empty()) fmt::print("    --case '{}'\n", CaseLine(family.worst_case));
@@ -100,6 +138,7 @@ void PrintStress(const StressResult& result) {
       for (const std::string& failure : path.failures) fmt::print("    FAILS: {}\n", failure);
     }
   }
+  PrintLowerPrecision(result);
   fmt::print(
       "\n* an input's last bit moves the answer: the error is judged by the ulps of the inputs that explain "
       "it (backward error)\n"
@@ -166,6 +205,7 @@ int RunStress(const StressArguments& arguments) {
   options.cases = arguments.cases;
   options.seed = arguments.seed;
   options.pictures = !arguments.out.empty();
+  options.fp16 = true;
   // A variant that is asked for is judged; of all, the default forms are.
   for (const std::string& name : arguments.techniques)
     options.variants.push_back(ParseVariant(techniques, name));

@@ -33,6 +33,7 @@ MaximalContribution MaximalContributionOf(const PointCase& c);
 // backward error of about 1.
 struct StressBounds {
   double worst = 1e-3, p999 = 2e-5, backward = 8.0;
+  double approximation = 1e-3;  // of |double − ideal form in double|, relative alike, at worst
 };
 
 // A looser bound, and the cause that was measured. `shape`: of one shape alone.
@@ -60,14 +61,19 @@ struct FamilyResult {
   // what the double form does then, per ulp, the most is taken.
   double backward = 0.0;
   std::int64_t probed = 0;
-  double approximation =
-      0.0;  // |double − ideal form in double|, relative as above, at worst; over the first kIdealCases
+  // |double − ideal form in double|, relative as above, at worst and its case; over the first kIdealCases
+  double approximation = 0.0;
+  PointCase approximation_case;
   double half_tables =
       0.0;  // of float with tables of half floats against float, at 99.9 %; over the same cases
+  // The same text in half floats, inputs too, against float on these inputs; of the same cases those that half floats hold.
+  // Not judged: which technique bears it, and by how much.
+  std::int64_t fp16_cases = 0, fp16_nonfinite = 0;
+  double fp16_median = 0.0, fp16_p999 = 0.0;  // of the finite ones
   PointCase
       worst_case;  // the first that is not finite, else the first negative one, else that of the worst error
-  std::vector<float> patch_value,
-      patch_error;  // both lobes over the radiance, in float; rounding error; where asked for
+  // Around the worst case, where asked for or something fails: both lobes over the radiance, in float and in double; rounding error.
+  std::vector<float> patch_value, patch_double, patch_error;
   StressBounds bounds;
   std::string cause;                  // why they are looser than the general ones; empty where they are not
   std::vector<std::string> failures;  // one line each: what is exceeded
@@ -101,6 +107,10 @@ struct VariantStress {
   double seconds = 0.0;
   std::vector<FamilyResult> families;
   std::vector<PathResult> paths;
+
+  std::int64_t cases() const;
+  // Of all families together, what half floats' arithmetic makes not finite.
+  std::int64_t fp16_cases() const, fp16_nonfinite() const;
 };
 
 struct StressOptions {
@@ -109,7 +119,8 @@ struct StressOptions {
   std::int64_t cases = 240000;  // of a variant, over all families and shapes
   std::uint64_t seed = 1;
   std::optional<LightShape> shape;  // one alone
-  bool pictures = false;            // fill patch_value and patch_error
+  bool pictures = false;            // fill the patches where nothing fails too
+  bool fp16 = false;                // fill what is of half floats' arithmetic: a program more
   std::function<void(const std::string&, double)> progress;
 };
 

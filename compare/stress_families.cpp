@@ -16,19 +16,55 @@ namespace {
 
 using glm::dvec3;
 
-const std::vector<LightShape> kAll{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere};
-const std::vector<LightShape> kFlat{LightShape::kRectangle, LightShape::kDisk};
-const std::vector<LightShape> kCornered{LightShape::kRectangle};
+const std::vector<LightShape> kAll{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere,
+                                   LightShape::kEllipse, LightShape::kPolygon};
+const std::vector<LightShape> kFlat{LightShape::kRectangle, LightShape::kDisk, LightShape::kEllipse,
+                                    LightShape::kPolygon};
+const std::vector<LightShape> kLong{LightShape::kRectangle, LightShape::kEllipse, LightShape::kPolygon};
+const std::vector<LightShape> kCornered{LightShape::kRectangle, LightShape::kPolygon};
 const std::vector<LightShape> kRound{LightShape::kSphere};
 const std::vector<LightShape> kTubes{LightShape::kTube};
+
+bool HasOneSize(LightShape shape) {
+  return shape == LightShape::kDisk || shape == LightShape::kSphere;
+}
+bool HasRim(LightShape shape) {
+  return shape == LightShape::kDisk || shape == LightShape::kEllipse;
+}
 
 double Length(const PointCase& c) {
   return std::max(c.half_size.x, c.half_size.y);
 }
 
-// Half sizes x and y of a rectangle; other shapes take x.
+// Half sizes x and y; disks and spheres take x.
 void SetSize(PointCase& c, double x, double y) {
-  c.half_size = {x, c.shape == LightShape::kRectangle || c.shape == LightShape::kTube ? y : x};
+  c.half_size = {x, HasOneSize(c.shape) ? x : y};
+}
+
+// A polygon's corners about their centroid, three to eight on a circle. In half sizes, as places on a light are
+// while its case is made; MakeCases turns them into metres.
+void GiveCorners(PointCase& c, CaseRandom& random) {
+  if (c.shape != LightShape::kPolygon) return;
+  const int count = static_cast<int>(random(3.0, 8.999));
+  const double turn = random(0.0, 2.0 * std::numbers::pi);
+  for (int i = 0; i < count; ++i) {
+    const double angle = turn + 2.0 * std::numbers::pi * (i + random(0.0, 0.7)) / count;
+    c.corners.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  arealab::Light light;
+  SetCorners(light, c.corners);
+  c.corners = light.corners;
+}
+
+// On the outline, in half sizes: a corner, or a place on a side.
+glm::dvec2 AnyCorner(const PointCase& c, CaseRandom& random) {
+  if (c.shape != LightShape::kPolygon) return {random.Chance(0.5) ? 1.0 : -1.0, random.Chance(0.5) ? 1.0 : -1.0};
+  return c.corners[static_cast<std::size_t>(random(0.0, static_cast<double>(c.corners.size()) - 0.001))];
+}
+glm::dvec2 OnAnySide(const PointCase& c, double from, double to, CaseRandom& random) {
+  const auto count = static_cast<double>(c.corners.size());
+  const auto i = static_cast<std::size_t>(random(0.0, count - 0.001));
+  return glm::mix(c.corners[i], c.corners[(i + 1) % c.corners.size()], random(from, to));
 }
 
 // Turns the light's lit side to `normal`, its axes about it at random.
@@ -80,6 +116,7 @@ PointCase Ordinary(CaseRandom& random, LightShape shape) {
   c.roughness = random(0.1, 1.0);
   c.f0 = random.Chance(0.5) ? 1.0 : 0.04;
   SetSize(c, random(0.2, 2.0), random(0.2, 2.0));
+  GiveCorners(c, random);
   dvec3 to_center = random.Direction();
   if (glm::dot(to_center, c.normal) < 0.0) to_center = -to_center;
   if (random.Chance(0.5)) {  // where the highlight is
@@ -100,7 +137,7 @@ PointCase Ordinary(CaseRandom& random, LightShape shape) {
 // The surface's horizon through the light: along a random direction as seen from a place inside its outline.
 PointCase Crossing(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
-  const double spread = shape == LightShape::kSphere ? 0.6 : 0.95;
+  const double spread = shape == LightShape::kSphere ? 0.6 : shape == LightShape::kPolygon ? 0.4 : 0.95;
   const dvec3 inside = c.center + c.axis_x * (spread * c.half_size.x * random(-1.0, 1.0)) +
                        c.axis_y * (spread * c.half_size.y * random(-1.0, 1.0)) - c.position;
   const double cosine = glm::dot(c.normal, c.to_view);
@@ -112,12 +149,17 @@ PointCase Crossing(CaseRandom& random, LightShape shape) {
 // A corner, two corners or the rim within 1e-7 (relative) of the horizon.
 PointCase Touching(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
-  const double x = random.Chance(0.5) ? 1.0 : -1.0, y = random.Chance(0.5) ? 1.0 : -1.0;
-  dvec3 touched = c.center + x * c.half_size.x * c.axis_x;
-  if (shape == LightShape::kRectangle) touched += y * c.half_size.y * c.axis_y;
+  const glm::dvec2 corner = AnyCorner(c, random);
+  dvec3 touched = c.center + corner.x * c.half_size.x * c.axis_x;
+  if (!HasOneSize(shape) && !HasRim(shape)) touched += corner.y * c.half_size.y * c.axis_y;
   dvec3 along = random.Direction();  // with the touched place it spans the horizon
   if (shape == LightShape::kRectangle && random.Chance(0.5)) along = random.Chance(0.5) ? c.axis_x : c.axis_y;
-  if (shape == LightShape::kDisk) along = c.axis_y;
+  if (shape == LightShape::kPolygon && random.Chance(0.5)) {
+    const glm::dvec2 side = AnyCorner(c, random) - corner;
+    along = c.axis_x * (side.x * c.half_size.x) + c.axis_y * (side.y * c.half_size.y);
+    if (side == glm::dvec2(0.0)) along = c.axis_x;
+  }
+  if (HasRim(shape)) along = c.axis_y;
   if (shape == LightShape::kSphere) {  // a tangent from the point
     const dvec3 to_center = c.center - c.position;
     const double distance = glm::length(to_center), sine = c.half_size.x / distance;
@@ -151,10 +193,15 @@ PointCase OnPlane(CaseRandom& random, LightShape shape) {
 PointCase OnEdge(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
   double x = random.Chance(0.5) ? 1.0 : -1.0, y = random(-1.0, 1.0);
-  if (shape == LightShape::kDisk) {
+  if (HasRim(shape)) {
     const double angle = random(0.0, 2.0 * std::numbers::pi);
     x = std::cos(angle);
     y = std::sin(angle);
+  }
+  if (shape == LightShape::kPolygon) {
+    const glm::dvec2 place = OnAnySide(c, 0.0, 1.0, random);
+    x = place.x;
+    y = place.y;
   }
   if (random.Chance(0.7)) x += random.Signed(1e-9, 1e-3);
   if (shape == LightShape::kRectangle && random.Chance(0.5)) std::swap(x, y);
@@ -164,12 +211,12 @@ PointCase OnEdge(CaseRandom& random, LightShape shape) {
 
 PointCase OnCorner(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
-  double x = random.Chance(0.5) ? 1.0 : -1.0, y = random.Chance(0.5) ? 1.0 : -1.0;
+  glm::dvec2 place = AnyCorner(c, random);
   if (random.Chance(0.7)) {
-    x += random.Signed(1e-9, 1e-3);
-    y += random.Signed(1e-9, 1e-3);
+    place.x += random.Signed(1e-9, 1e-3);
+    place.y += random.Signed(1e-9, 1e-3);
   }
-  PlacePoint(c, x, y, Height(1e-3, c, random));
+  PlacePoint(c, place.x, place.y, Height(1e-3, c, random));
   return c;
 }
 
@@ -193,7 +240,11 @@ PointCase Contact(CaseRandom& random, LightShape shape) {
     return c;
   }
   double x = random(-1.0, 1.0), y = random(-1.0, 1.0);
-  if (shape == LightShape::kDisk && x * x + y * y > 1.0) x = y = 0.5;
+  if (HasRim(shape) && x * x + y * y > 1.0) x = y = 0.5;
+  if (shape == LightShape::kPolygon) {
+    x *= 0.3;
+    y *= 0.3;
+  }
   if (random.Chance(0.5)) {  // on the surface that faces the light
     FaceTo(c, -c.normal, random);
   }
@@ -291,6 +342,9 @@ PointCase Corners(CaseRandom& random, LightShape shape) {
   if (random.Chance(0.5)) {
     c.half_size *= random.Log(1e-7, 1e-4);
     if (random.Chance(0.5)) c.half_size.y = c.half_size.x * random.Log(1e-3, 1.0);
+  } else if (shape == LightShape::kPolygon) {
+    const glm::dvec2 place = OnAnySide(c, 0.25, 0.75, random) * (1.0 + random.Signed(1e-7, 1e-2));
+    PlacePoint(c, place.x, place.y, random.Log(1e-7, 1e-2) * Length(c));
   } else {
     PlacePoint(c, random(-0.5, 0.5), 1.0 + random.Signed(1e-7, 1e-2), random.Log(1e-7, 1e-2) * Length(c));
   }
@@ -301,7 +355,7 @@ PointCase Corners(CaseRandom& random, LightShape shape) {
 PointCase NoArea(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
   const double rest = random.Chance(0.5) ? 0.0 : random.Log(1e-38, 1e-20);
-  if (random.Chance(0.5) || shape != LightShape::kRectangle)
+  if (random.Chance(0.5) || HasOneSize(shape))
     c.half_size = glm::dvec2(rest);
   else if (random.Chance(0.5))
     c.half_size.x = rest;
@@ -417,6 +471,12 @@ PointCase Panel(double view, LightShape shape) {
   c.axis_x = {0.0, 1.0, 0.0};
   c.axis_y = {0.0, 0.0, -1.0};
   SetSize(c, 0.5, 0.3);
+  if (shape == LightShape::kPolygon) {
+    arealab::Light light;
+    SetCorners(light, {{-0.5, -0.3}, {0.5, -0.3}, {0.4, 0.2}, {0.0, 0.3}, {-0.5, 0.1}});
+    c.corners = light.corners;
+    c.half_size = light.half_size;
+  }
   return c;
 }
 
@@ -484,21 +544,24 @@ constexpr std::array<Field, 10> kFields{{{"position", &PointCase::position, null
                                          {"light_normal", &PointCase::light_normal, nullptr},
                                          {"radiance", nullptr, &PointCase::radiance}}};
 
-// `count` numbers with commas between.
-std::vector<double> ParseNumbers(const std::string& key, const std::string& text, std::size_t count) {
+// `least` to `most` numbers with commas between.
+std::vector<double> ParseNumbers(const std::string& key, const std::string& text, std::size_t least,
+                                 std::size_t most) {
   std::vector<double> numbers;
   const char* at = text.c_str();
-  for (std::size_t i = 0; i < count; ++i) {
+  while (true) {
     char* end = nullptr;
     numbers.push_back(std::strtod(at, &end));
-    const bool last = i + 1 == count;
-    if (end == at || *end != (last ? '\0' : ',') || !std::isfinite(numbers.back())) {
-      throw InputError(fmt::format("--case: {}={}; expected {} finite number{} with commas between", key,
-                                   text, count, count == 1 ? "" : "s"));
+    const bool last = *end == '\0';
+    if (end == at || (!last && *end != ',') || !std::isfinite(numbers.back()) || numbers.size() > most ||
+        (last && numbers.size() < least)) {
+      throw InputError(fmt::format("--case: {}={}; expected {} finite number{} with commas between", key, text,
+                                   least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most),
+                                   most == 1 ? "" : "s"));
     }
+    if (last) return numbers;
     at = end + 1;
   }
-  return numbers;
 }
 
 }  // namespace
@@ -539,7 +602,7 @@ const std::vector<StressFamily>& StressFamilies() {
       {"far", "the light 1e4 to 1e5 of its sizes away", false, kAll, Far},
       {"tiny", "a scene of 1e-5 to 1e-4 m", false, kAll, Tiny},
       {"huge", "a scene, or a light, of 1e4 to 1e5 m", false, kAll, Huge},
-      {"thin", "sides of 1 : 1e3 to 1 : 1e5", false, kCornered, Thin},
+      {"thin", "sides, or half axes, of 1 : 1e3 to 1 : 1e5", false, kLong, Thin},
       {"corners", "consecutive corners in nearly one direction, or in opposite ones", true, kCornered,
        Corners},
       {"no_area", "a light without extent, or with one whose square is no float", false, kAll, NoArea},
@@ -586,7 +649,14 @@ std::vector<PointCase> MakeCases(const StressFamily& family, LightShape shape, i
     CaseRandom random(name ^ (seed * 1000003u + static_cast<std::uint64_t>(block) * 3u +
                               static_cast<std::uint64_t>(shape)));
     for (int i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
-      cases[static_cast<std::size_t>(i)] = family.make(random, shape).Rounded();
+      PointCase c = family.make(random, shape);
+      glm::dvec2 reach(0.0);
+      for (glm::dvec2& corner : c.corners) {
+        corner *= c.half_size;
+        reach = glm::max(reach, glm::abs(corner));
+      }
+      if (!c.corners.empty()) c.half_size = reach;
+      cases[static_cast<std::size_t>(i)] = c.Rounded();
     }
   });
   return cases;
@@ -602,14 +672,22 @@ std::string CaseLine(const PointCase& c) {
       line += fmt::format(" {}={:.9g}", field.name, c.*field.number);
     }
   }
-  return line + fmt::format(" half_size={:.9g},{:.9g}", c.half_size.x, c.half_size.y);
+  line += fmt::format(" half_size={:.9g},{:.9g}", c.half_size.x, c.half_size.y);
+  for (std::size_t i = 0; i < c.corners.size(); ++i)
+    line += fmt::format("{}{:.9g},{:.9g}", i == 0 ? " corners=" : ",", c.corners[i].x, c.corners[i].y);
+  return line;
 }
 
 PointCase ParseCase(std::string_view line) {
   PointCase c;
   while (true) {
     line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
-    if (line.empty()) return c.Rounded();
+    if (line.empty()) {
+      if ((c.shape == LightShape::kPolygon) != !c.corners.empty()) {
+        throw InputError("--case: corners and shape=polygon; expected both or neither");
+      }
+      return c.Rounded();
+    }
     const std::string word(line.substr(0, line.find(' ')));
     line.remove_prefix(word.size());
     const auto equals = word.find('=');
@@ -618,23 +696,27 @@ PointCase ParseCase(std::string_view line) {
     const std::string key = word.substr(0, equals), value = word.substr(equals + 1);
     const auto field = std::ranges::find_if(kFields, [&](const Field& f) { return key == f.name; });
     if (key == "shape") {
-      constexpr std::array kKnown{LightShape::kRectangle, LightShape::kDisk, LightShape::kSphere, LightShape::kTube};
-      const auto shape = std::ranges::find_if(kKnown, [&](LightShape s) { return value == Name(s); });
-      if (shape == kKnown.end()) {
-        throw InputError(fmt::format("--case: shape={}; expected rectangle, disk, sphere or tube", value));
+      const auto shape = std::ranges::find_if(kLightShapes, [&](LightShape s) { return value == Name(s); });
+      if (shape == kLightShapes.end()) {
+        throw InputError(fmt::format("--case: shape={}; expected rectangle, disk, sphere, ellipse, polygon or tube", value));
       }
       c.shape = *shape;
     } else if (key == "half_size") {
-      const std::vector<double> v = ParseNumbers(key, value, 2);
+      const std::vector<double> v = ParseNumbers(key, value, 2, 2);
       c.half_size = {v[0], v[1]};
+    } else if (key == "corners") {
+      const std::vector<double> v = ParseNumbers(key, value, 6, 16);
+      if (v.size() % 2 != 0) throw InputError(fmt::format("--case: {}={}; expected pairs x,y", key, value));
+      c.corners.clear();
+      for (std::size_t i = 0; i < v.size(); i += 2) c.corners.emplace_back(v[i], v[i + 1]);
     } else if (field == kFields.end()) {
       throw InputError(
           fmt::format("--case: unknown {}; expected what `arealab stress` prints as a case", key));
     } else if (field->vector != nullptr) {
-      const std::vector<double> v = ParseNumbers(key, value, 3);
+      const std::vector<double> v = ParseNumbers(key, value, 3, 3);
       c.*field->vector = {v[0], v[1], v[2]};
     } else {
-      c.*field->number = ParseNumbers(key, value, 1)[0];
+      c.*field->number = ParseNumbers(key, value, 1, 1)[0];
     }
   }
 }
@@ -645,7 +727,7 @@ std::string CaseScene(const PointCase& c, const std::string& about) {
   const double radiance = std::clamp(c.radiance, 1e-30, 1e12);
   const bool said = radiance == c.radiance && length(c.half_size.x) == c.half_size.x &&
                     length(c.half_size.y) == c.half_size.y && std::abs(glm::length(c.normal) - 1.0) < 1e-6 &&
-                    glm::dot(c.normal, c.to_view) > 0.0;
+                    glm::dot(c.normal, c.to_view) > 0.0 && (c.corners.empty() || !WhyNoPolygon(c.corners));
   const dvec3 normal = glm::normalize(c.normal);
   const double distance = glm::length(c.center - c.position), degrees = 180.0 / std::numbers::pi;
   const double away = std::clamp(distance, 1e-5, 1e6);  // of the camera, and the surface's size
@@ -674,10 +756,22 @@ std::string CaseScene(const PointCase& c, const std::string& about) {
   if (c.shape != LightShape::kSphere) {
     text += fmt::format("normal = {}\nup = {}\n", triple(c.light_normal), triple(c.axis_y));
   }
-  text +=
-      c.shape == LightShape::kRectangle
-          ? fmt::format("size = [{:.9g}, {:.9g}]\n", 2.0 * length(c.half_size.x), 2.0 * length(c.half_size.y))
-          : fmt::format("radius = {:.9g}\n", length(c.half_size.x));
+  const glm::dvec2 size(length(c.half_size.x), length(c.half_size.y));
+  switch (c.shape) {
+    case LightShape::kRectangle:
+      text += fmt::format("size = [{:.9g}, {:.9g}]\n", 2.0 * size.x, 2.0 * size.y);
+      break;
+    case LightShape::kEllipse:
+      text += fmt::format("radii = [{:.9g}, {:.9g}]\n", size.x, size.y);
+      break;
+    case LightShape::kPolygon:
+      for (std::size_t i = 0; i < c.corners.size(); ++i)
+        text += fmt::format("{}[{:.9g}, {:.9g}]", i == 0 ? "corners = [" : ", ", c.corners[i].x, c.corners[i].y);
+      text += "]\n";
+      break;
+    default:
+      text += fmt::format("radius = {:.9g}\n", size.x);
+  }
   return text;
 }
 

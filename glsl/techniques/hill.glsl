@@ -28,6 +28,7 @@ choices = [
   ["quadratic", "the rational fit for the specular lobe, a quadratic for the diffuse one"],
   ["acos", "the language's arc cosine"],
   ["fast_acos", "the four-term arc cosine that GPUs run"],
+  ["arctangent", "the arc tangent of sine and cosine: all digits at every angle"],
 ]
 
 [[option]]
@@ -119,7 +120,7 @@ fresnel = "lobe"
 
 [ideal]
 sphere = "exact"
-edge = "acos"
+edge = "arctangent"
 disk = "cone"
 norm = "none"
 

@@ -32,6 +32,7 @@ choices = [
   ["mirrored", "polynomial in the acute angle's cosine, mirrored where obtuse by the exact cross product"],
   ["half_angle", "polynomial in the half angle's cosine, no case for near lights, fewer digits near π"],
   ["acos", "the language's arc cosine (the published one)"],
+  ["arctangent", "the arc tangent of sine and cosine: all digits at every angle"],
 ]
 
 [published]
@@ -41,7 +42,7 @@ edge = "acos"
 
 [ideal]
 clip = "stream"
-edge = "acos"
+edge = "arctangent"
 
 [[departs]]
 law = "lambert_rectangle"

@@ -28,6 +28,7 @@ choices = [
   ["quadratic", "the rational fit for the specular lobe, a quadratic for the diffuse one"],
   ["acos", "the language's arc cosine"],
   ["fast_acos", "the four-term arc cosine that GPUs run"],
+  ["arctangent", "the arc tangent of sine and cosine: all digits at every angle"],
 ]
 
 [[option]]
@@ -137,7 +138,7 @@ fresnel = "lobe"
 
 [ideal]
 clip = "stream"
-edge = "acos"
+edge = "arctangent"
 disk = "exact"
 norm = "none"
 

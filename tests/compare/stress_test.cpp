@@ -36,9 +36,12 @@ TEST(StressCases, AreALineAndBack) {
 
 TEST(StressCases, WhatIsNoLineIsOneSentence) {
   for (const auto& [line, what] :
-       {std::pair{"shape=cube", "expected rectangle, disk, sphere or tube"},
+       {std::pair{"shape=cube", "expected rectangle, disk, sphere, ellipse, polygon or tube"},
         std::pair{"center=1,2", "expected 3 finite numbers with commas between"},
         std::pair{"roughness=nan", "expected 1 finite number with commas between"},
+        std::pair{"shape=polygon corners=0,0,1,0", "expected 6 to 16 finite numbers with commas between"},
+        std::pair{"shape=polygon", "expected both or neither"}, std::pair{"corners=0,0,1,0,0,1", "expected both or neither"},
+        std::pair{"shape=polygon corners=0,0,1,0,0,1,2", "expected pairs x,y"},
         std::pair{"colour=1", "unknown colour"}, std::pair{"nothing", "expected NAME=VALUE"}}) {
     try {
       ParseCase(line);
@@ -92,6 +95,17 @@ TEST(StressCases, AreWhatTheirFamilySays) {
   EXPECT_EQ(
       share("view_below", kRectangle, [](const PointCase& c) { return glm::dot(c.normal, c.to_view) < 0.0; }),
       1.0);
+  // Polygons are convex, counter-clockwise, about their centroid; thin ones too, and ellipses.
+  EXPECT_EQ(share("ordinary", LightShape::kPolygon,
+                  [](const PointCase& c) {
+                    Light again = c.Light();
+                    SetCorners(again, c.corners);
+                    return !WhyNoPolygon(c.corners) && glm::length(again.corners[1] - c.corners[1]) < 1e-6 && glm::length(again.center - c.center) < 1e-6;
+                  }),
+            1.0);
+  for (const LightShape shape : {kRectangle, LightShape::kEllipse, LightShape::kPolygon}) {
+    EXPECT_EQ(share("thin", shape, [](const PointCase& c) { return std::min(c.half_size.x, c.half_size.y) < 4e-3 * std::max(c.half_size.x, c.half_size.y); }), 1.0);
+  }
   EXPECT_GT(share("offset", kRectangle, [](const PointCase& c) { return glm::length(c.position) > 9.9e5; }),
             0.99);
 }
@@ -101,7 +115,7 @@ class Stressed : public testing::Test {
   static void SetUpTestSuite() { context_ = CreateContext(ContextKind::kOsmesa); }
   static void TearDownTestSuite() { context_.reset(); }
 
-  static VariantStress Run(const std::string& name, std::optional<LightShape> shape, std::int64_t cases) {
+  static VariantStress Run(const std::string& name, std::optional<LightShape> shape, std::int64_t cases, bool fp16 = false) {
     static const ShaderLibrary library;
     static const std::vector<Technique> techniques = LoadTechniques(library);
     StressOptions options;
@@ -109,6 +123,7 @@ class Stressed : public testing::Test {
     options.judged = {true};
     options.shape = shape;
     options.cases = cases;
+    options.fp16 = fp16;
     return Stress(*context_, library, options).variants[0];
   }
 
@@ -126,37 +141,59 @@ class Stressed : public testing::Test {
   inline static std::unique_ptr<Context> context_;
 };
 
-TEST_F(Stressed, DefaultFormsKeepTheirBounds) {
-  for (const char* name : {"ltc", "karis", "point"}) {
-    const VariantStress variant = Run(name, std::nullopt, 12000);
-    for (const FamilyResult& family : variant.families) {
-      EXPECT_THAT(family.failures, testing::IsEmpty())
-          << name << " " << family.family->name << " " << CaseLine(family.worst_case);
-    }
-    for (const PathResult& path : variant.paths)
-      EXPECT_THAT(path.failures, testing::IsEmpty()) << name << " " << path.path->name;
-  }
-}
-
-// Each where its source says, and the default form beside it. Measured: see below.
+// Each where its source says, and the default form beside it passes. (All default forms: `arealab check`.) Measured: see below.
 TEST_F(Stressed, BrokenFormsFailWhereTheirSourcesSay) {
+  const auto fails = [](const VariantStress& variant, const std::string& path) {
+    return std::ranges::any_of(variant.paths, [&](const PathResult& p) { return p.path->name == path && !p.failures.empty(); });
+  };
   const VariantStress ltc = Run("ltc", LightShape::kRectangle, 3000);
+  for (const FamilyResult& family : ltc.families) EXPECT_THAT(family.failures, testing::IsEmpty()) << family.family->name;
+  for (const PathResult& path : ltc.paths) EXPECT_THAT(path.failures, testing::IsEmpty()) << path.path->name;
   // The arc cosine of GPUs rings under a bright light: 2.2e-2 of the value, across a floor; the rational fit 1.6e-4, ltc 9e-5.
   const VariantStress fast = Run("ltc@published+edge=fast_acos", LightShape::kRectangle, 300);
   EXPECT_GT(Bend(fast, "floor", "diffuse"), 0.015);
-  EXPECT_LT(Bend(ltc, "floor", "diffuse"), kMostBend);
+  EXPECT_TRUE(fails(fast, "floor"));
   // The matrix over its last element bands at grazing angles: 0.045; undivided 0.011, ltc 4e-5.
   const VariantStress last = Run("ltc@published+norm=last", LightShape::kRectangle, 300);
   EXPECT_GT(Bend(last, "grazing", "specular"), 0.03);
-  EXPECT_LT(Bend(ltc, "grazing", "specular"), kMostBend);
+  EXPECT_TRUE(fails(last, "grazing"));
   // Without a clip what is below the horizon darkens: by as much as is there.
   const VariantStress none = Run("ltc+clip=none", LightShape::kRectangle, 3000);
   EXPECT_GT(Of(none, "crossing").approximation, 0.1);
-  EXPECT_LT(Of(ltc, "crossing").approximation, 1e-4);
+  EXPECT_THAT(Of(none, "crossing").failures, testing::Not(testing::IsEmpty()));
   // The published clamp fails near the light's plane, in double as well.
   const VariantStress published = Run("ltc+clip=switch+edge=rational", LightShape::kRectangle, 3000);
   EXPECT_GT(Of(published, "contact").approximation, 1e-3);
-  EXPECT_LT(Of(ltc, "contact").approximation, 1e-3);
+  EXPECT_THAT(Of(published, "contact").failures, testing::Not(testing::IsEmpty()));
+}
+
+// Told, not judged: which cases half floats hold, and what they make of them.
+TEST_F(Stressed, HalfFloatsAreToldByFamily) {
+  const VariantStress point = Run("point", LightShape::kRectangle, 2400, true);
+  const FamilyResult& ordinary = Of(point, "ordinary");
+  EXPECT_EQ(ordinary.fp16_cases, ordinary.cases);
+  EXPECT_EQ(ordinary.fp16_nonfinite, 0);
+  EXPECT_GT(ordinary.fp16_median, 1e-5);  // half a step is 2.4e-4 of the value, less of what the light gives at most
+  EXPECT_LT(ordinary.fp16_p999, 0.05);
+  EXPECT_EQ(Of(point, "offset").fp16_cases, 0);  // 1e6 m is infinite
+  EXPECT_THAT(Of(point, "offset").failures, testing::IsEmpty());
+  EXPECT_EQ(Run("point", LightShape::kRectangle, 300).fp16_cases(), 0);  // where it is not asked for
+}
+
+TEST(StressCases, AsHalvesAreTheSameLightOrNone) {
+  PointCase c;
+  c.center = {0.1, 0.0, 2.0};
+  const auto half = c.AsHalves();
+  ASSERT_TRUE(half);
+  EXPECT_EQ(half->center.x, 0.0999755859375);
+  c.radiance = 1e-30;
+  EXPECT_FALSE(c.AsHalves());
+  c.radiance = 1.0;
+  c.half_size = {0.5, 1e-6};
+  EXPECT_FALSE(c.AsHalves());
+  c.half_size = {0.5, 0.5};
+  c.position.x = c.center.x = 70000.0;
+  EXPECT_FALSE(c.AsHalves());
 }
 
 TEST(StressMutants, AreThereExactlyOnce) {
