@@ -19,6 +19,7 @@ struct CheckArguments {
   std::vector<std::string> techniques;
   std::string golden = AREALAB_GOLDEN_DIR;
   std::string out = AREALAB_CHECK_DIR;
+  std::int64_t hard_cases = 12000;
   bool update = false;
 };
 
@@ -34,6 +35,10 @@ int RunCheck(const CheckArguments& arguments) {
   options.update = arguments.update;
   options.all_scenes = arguments.scenes.empty();
   options.all_variants = arguments.techniques.empty();
+  if (options.all_scenes) options.hard_cases = arguments.hard_cases;
+  if (arguments.golden != AREALAB_GOLDEN_DIR) options.repeated_of_images = ShellArgument("--golden", arguments.golden);
+  if (!arguments.common.glsl.empty()) options.repeated += ShellArgument("--glsl", arguments.common.glsl);
+  if (!arguments.common.context.empty()) options.repeated += " --context " + arguments.common.context;
   if (options.all_variants) options.variants = DefaultVariants(techniques);
   for (const std::string& name : arguments.techniques) {
     const Variant variant = ParseVariant(techniques, name);
@@ -56,31 +61,25 @@ int RunCheck(const CheckArguments& arguments) {
   }
 
   for (const CheckCase& row : result.cases) {
-    for (const std::string& change : row.changes) fmt::print("{}: {}: {}\n", row.scene, row.variant, change);
+    for (const std::string& change : row.changes) fmt::print("{}: {}\n", row.Title(), change);
   }
   for (const CheckCase& row : result.cases) {
     for (const CheckFailure& failure : row.failures) {
-      fmt::print(stderr, "{}: {}: {}: {}\n", row.scene, row.variant, Name(failure.kind), failure.message);
+      fmt::print(stderr, "{}: {}: {}\n", row.Title(), Name(failure.kind), failure.message);
     }
   }
-  const std::filesystem::path page =
-      std::filesystem::absolute(arguments.out).lexically_normal() / "check.html";
+  const std::filesystem::path out = std::filesystem::absolute(arguments.out).lexically_normal();
+  WriteCheckReport(result, out);
   if (result.failures() == 0) {
-    std::error_code ignored;
-    std::filesystem::remove(page, ignored);  // an earlier run's failures are over
-    fmt::print("{} images {} {}; {} not supported\n", result.checked,
-               arguments.update ? "stored in" : "pass against", arguments.golden, result.unsupported);
+    fmt::print("{} images {} {}; {} not supported{}\n", result.checked,
+               arguments.update ? "stored in" : "pass against", arguments.golden, result.unsupported,
+               result.hard == 0 ? "" : fmt::format("; {} hard families and paths pass", result.hard));
     return 0;
   }
-  std::string repeated;  // what every case's rerun needs
-  if (arguments.golden != AREALAB_GOLDEN_DIR) repeated += ShellArgument("--golden", arguments.golden);
-  if (!arguments.common.glsl.empty()) repeated += ShellArgument("--glsl", arguments.common.glsl);
-  if (!arguments.common.context.empty()) repeated += " --context " + arguments.common.context;
-  WriteCheckPage(result, "arealab check", repeated, page);
   const auto failed = std::count_if(result.cases.begin(), result.cases.end(),
                                     [](const CheckCase& row) { return !row.failures.empty(); });
-  fmt::print("{} failures in {} of {} images: {}\n", result.failures(), failed, result.checked,
-             page.string());
+  fmt::print("{} failures in {} of {} images, hard families and paths: {}\n", result.failures(), failed,
+             result.checked + result.hard, (out / "check.html").string());
   return kExitLimitExceeded;
 }
 
@@ -89,14 +88,19 @@ int RunCheck(const CheckArguments& arguments) {
 void AddCheck(CLI::App& app, int& status) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand(
-      "check", "Test every technique's image against its stored one, and its error against the truth's band");
+      "check", "Test every technique's image against its stored one, its error against the truth's band, and its hard cases");
   command->add_option("scenes", arguments->scenes,
                       "built-in names or scene files (default: all built-in scenes)");
   command->add_option("--golden", arguments->golden, "folder of the stored images and bands.json")
       ->capture_default_str();
   command->add_flag("--update", arguments->update,
                     "store what is drawn now, and print old and new error of what changed");
-  command->add_option("--out", arguments->out, "folder for the page, check.html, that shows what failed")
+  command->add_option("--hard-cases", arguments->hard_cases,
+                      "how many of each technique's default form, where no scene is named; 0: none (see stress)")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--out", arguments->out,
+                      "folder for junit.xml, and for check.html and pictures/ of what failed")
       ->capture_default_str();
   command->add_option(
       "--technique", arguments->techniques,

@@ -261,7 +261,7 @@ std::string Quoted(const std::string& word) {
 class Checker {
  public:
   Checker(Context& context, const ShaderLibrary& library, const CheckOptions& options)
-      : options_(options), renderer_(context.gl(), library) {
+      : context_(context), library_(library), options_(options), renderer_(context.gl(), library) {
     result_.renderer = context.renderer();
     OpenGoldens();
   }
@@ -282,6 +282,7 @@ class Checker {
       throw InputError("nothing to check: no chosen variant supports a chosen scene; expected one that does");
     }
     FindStale(names);
+    if (!options_.update && options_.hard_cases > 0) RunHardCases();
     if (options_.update) {
       if (options_.all_scenes && options_.all_variants) bands_.renderer = result_.renderer;
       WriteBands(options_.golden, bands_, options_.size);
@@ -344,8 +345,8 @@ class Checker {
       CheckCase row;
       row.scene = scene.name;
       row.variant = variants[v].Name();
-      row.rerun = fmt::format("{} --technique {}", Quoted(is_built_in ? scene.name : file.string()),
-                              Quoted(variants[v].ShortName()));
+      row.rerun = fmt::format("arealab check {} --technique {}{}{}", Quoted(is_built_in ? scene.name : file.string()),
+                              Quoted(variants[v].ShortName()), options_.repeated_of_images, options_.repeated);
       row.exposure = scene.exposure;
       row.truth = truth;
       row.emission = emission;
@@ -421,6 +422,47 @@ class Checker {
     row.changes.push_back(fmt::format("{}; rel_rmse {}", change.empty() ? "band moved" : change, figures));
   }
 
+  void RunHardCases() {
+    for (const Variant& variant : options_.variants) {
+      if (!(variant == DefaultVariant(*variant.technique))) continue;
+      StressOptions stress;
+      stress.variants = {variant};
+      stress.judged = {true};
+      stress.cases = options_.hard_cases;
+      if (options_.progress) options_.progress("hard cases: " + variant.ShortName(), 1.0);
+      const auto add = [&](const std::string& hard, const std::vector<std::string>& failures) -> CheckCase& {
+        CheckCase row;
+        row.scene = "hard cases";
+        row.variant = variant.Name();
+        row.hard = hard;
+        for (const std::string& failure : failures) row.failures.push_back({CheckKind::kHardCase, failure});
+        ++result_.hard;
+        result_.cases.push_back(std::move(row));
+        return result_.cases.back();
+      };
+      const std::string command = "arealab stress --technique " + Quoted(variant.ShortName());
+      try {
+        const VariantStress found = Stress(context_, library_, stress).variants[0];
+        for (const FamilyResult& family : found.families) {
+          CheckCase& row = add(family.family->name, family.failures);
+          row.rerun = fmt::format("{} --case '{}'{}", command, CaseLine(family.worst_case), options_.repeated);
+          if (!family.failures.empty()) row.family = std::make_shared<const FamilyResult>(family);
+        }
+        for (const StressPath& path : StressPaths()) {
+          std::vector<std::string> failures;
+          for (const PathResult& lobe : found.paths) {
+            if (lobe.path == &path) failures.insert(failures.end(), lobe.failures.begin(), lobe.failures.end());
+          }
+          add(fmt::format("path {}", path.name), failures).rerun = command + options_.repeated;
+        }
+      } catch (const InputError& error) {
+        CheckCase& row = add("all", {});
+        row.failures.push_back({CheckKind::kShader, error.what()});
+        row.rerun = command + options_.repeated;
+      }
+    }
+  }
+
   // Stored files and bands of the scenes and variants that were run in full, but that no variant asked for.
   void FindStale(const std::set<std::string>& names) {
     const auto covered = [&](const std::string& scene) {
@@ -485,6 +527,8 @@ class Checker {
     for (auto& [key, row] : stale) result_.cases.push_back(std::move(row));
   }
 
+  Context& context_;
+  const ShaderLibrary& library_;
   const CheckOptions& options_;
   Renderer renderer_;
   CheckResult result_;
@@ -530,6 +574,8 @@ const char* Name(CheckKind kind) {
       return "band";
     case CheckKind::kStaleBand:
       return "stale band";
+    case CheckKind::kHardCase:
+      return "hard case";
   }
   return "unknown";
 }
@@ -557,6 +603,10 @@ std::optional<CheckFailure> TestGolden(const RadianceImage& image, const Radianc
                     found.hardest, found.hardest_pixel % width, found.hardest_pixel / width, tolerance.hard);
   }
   return CheckFailure{CheckKind::kGolden, message};
+}
+
+std::string CheckCase::Title() const {
+  return fmt::format("{}: {}{}", scene, variant, hard.empty() ? "" : ": " + hard);
 }
 
 int CheckResult::failures() const {

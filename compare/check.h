@@ -1,5 +1,5 @@
 // Image tests: every variant against its own stored image (has it changed?) and against the truth, within a
-// band (is it still as right, and as wrong, as it was?).
+// band (is it still as right, and as wrong, as it was?). And every default form through the hard families (compare/stress.h).
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,7 @@
 
 #include "compare/context.h"
 #include "compare/results.h"
+#include "compare/stress.h"
 #include "glsl/shader_library.h"
 #include "glsl/variant.h"
 
@@ -57,6 +58,7 @@ enum class CheckKind {
   kMissingBand,
   kBand,       // the error against the truth left its band
   kStaleBand,  // a band that no variant asks for
+  kHardCase,   // a hard family or path exceeds its bounds
 };
 
 // "golden", "missing golden", …: as printed.
@@ -72,21 +74,26 @@ struct CheckFailure {
 std::optional<CheckFailure> TestGolden(const RadianceImage& image, const RadianceImage& golden,
                                        const GoldenTolerance& tolerance = {});
 
-// One variant on one scene, or a stored file that belongs to none.
+// One variant on one scene or through one hard family or path, or a stored file that belongs to none.
 struct CheckCase {
-  std::string scene, variant;  // variant: canonical
-  std::string rerun;      // the arguments of `arealab check` that run this case alone; empty for a stale file
+  std::string scene, variant;  // variant: canonical; scene "hard cases": with a family or path
+  std::string hard;            // the family or path, "contact", "path sinking"; empty of an image
+  std::string rerun;           // the command that runs this case alone; empty for a stale file
   double exposure = 0.0;  // EV
   std::vector<CheckFailure> failures;
   std::vector<std::string> changes;                           // what an update rewrote, one line each
   std::shared_ptr<const RadianceImage> image, golden, truth;  // null where there is none
   std::shared_ptr<const std::vector<glm::vec3>> emission;
+  std::shared_ptr<const FamilyResult> family;  // of a hard family that failed, with its pictures
+
+  std::string Title() const;  // "gloss: ltc", "hard cases: ltc: contact"
 };
 
 struct CheckResult {
   std::string renderer, golden_renderer;  // GL_RENDERER now, and when the goldens were made
   std::vector<CheckCase> cases;
   int checked = 0;      // images
+  int hard = 0;         // hard families and paths
   int unsupported = 0;  // pairs of scene and variant that the technique refuses
 
   int failures() const;
@@ -102,7 +109,10 @@ struct CheckOptions {
   std::filesystem::path golden;  // SCENE/VARIANT.exr and bands.json
   bool all_scenes = false;    // nothing was left out: a golden of a scene that is not among `scenes` is stale
   bool all_variants = false;  // the same for variants
-  bool update = false;        // rewrite goldens and bands, and remove stale ones
+  bool update = false;        // rewrite goldens and bands, and remove stale ones; no hard cases then
+  std::int64_t hard_cases = 0;  // of each technique's default form among `variants`; 0: none
+  // What the commands that rerun a case repeat: " --glsl mine"; of images alone " --golden kept".
+  std::string repeated, repeated_of_images;
   glm::ivec2 size = kCheckSize;
   std::function<void(const std::string&, double)> progress;  // what is being done, fraction of the whole
 };

@@ -4,13 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <span>
+#include <string_view>
+#include <vector>
 
 #include "compare/image_files.h"
 #include "compare/metrics.h"
 #include "compare/page_parts.h"
 #include "scenes/replace_file.h"
+#include "compare/stress_page.h"
 
 namespace arealab {
 namespace {
@@ -139,14 +145,33 @@ section { border-top: 1px solid #8886; }
 
 }  // namespace
 
-void WriteCheckPage(const CheckResult& result, const std::string& command, const std::string& common,
-                    const fs::path& file) {
+namespace {
+
+// Pictures of a case that failed, by what they show.
+std::vector<HardPicture> PicturesOf(const CheckCase& row) {
+  if (row.family) return HardPictures(*row.family);
+  std::vector<HardPicture> pictures;
+  if (!row.image) return pictures;
+  const std::span<const glm::vec3> emission =
+      row.emission ? std::span<const glm::vec3>(*row.emission) : std::span<const glm::vec3>();
+  const auto picture = [&](const RadianceImage& image) { return Shown(Picture(image, emission), row.exposure); };
+  pictures.push_back({"result", "", picture(*row.image)});
+  const bool truth = NeedsTruth(row);
+  const auto& reference = truth ? row.truth : row.golden;
+  if (!reference || reference->width != row.image->width || reference->size() != row.image->size()) return pictures;
+  pictures.push_back({"reference", "", picture(*reference)});
+  pictures.push_back({"difference", "",
+                      MapsOf(TotalRadiance(*row.image), TotalRadiance(*reference), truth ? kTruthRange : kGoldenRange).difference});
+  return pictures;
+}
+
+std::string PageOf(const CheckResult& result) {
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width\"><title>AreaLab: image tests that "
+      "content=\"width=device-width\"><title>AreaLab: tests that "
       "failed</title>\n<style>{}</style></head>\n<body>\n"
       "<h1>{} failed</h1>\n<p>Drawn by {}; the goldens by {}.</p>\n",
-      kCheckStyle, result.failures() == 1 ? "One image test" : fmt::format("{} image tests", result.failures()),
+      kCheckStyle, result.failures() == 1 ? "One test" : fmt::format("{} tests", result.failures()),
       Escaped(result.renderer),
       Escaped(result.golden_renderer.empty() ? "nobody yet" : result.golden_renderer));
   html += fmt::format(
@@ -156,20 +181,94 @@ void WriteCheckPage(const CheckResult& result, const std::string& command, const
       Ramp(true), Ramp(false));
   for (const CheckCase& row : result.cases) {
     if (row.failures.empty()) continue;
-    html += fmt::format("<section>\n<h2>{}: {}</h2>\n<ul>\n", Escaped(row.scene), Escaped(row.variant));
+    html += fmt::format("<section>\n<h2>{}</h2>\n<ul>\n", Escaped(row.Title()));
     for (const CheckFailure& failure : row.failures) {
       html += fmt::format("<li><b>{}</b>: {}</li>\n", Name(failure.kind), Escaped(failure.message));
     }
     html += "</ul>\n";
-    if (!row.rerun.empty())
-      html += fmt::format("<pre>{}</pre>\n", Escaped(command + " " + row.rerun + common));
+    if (!row.rerun.empty()) html += fmt::format("<pre>{}</pre>\n", Escaped(row.rerun));
     if (row.image && row.golden) html += Comparison(row, *row.golden, "golden", kGoldenRange);
     if (row.image && row.truth && NeedsTruth(row)) html += Comparison(row, *row.truth, "truth", kTruthRange);
+    if (row.family) {
+      html += "<div class=\"row\">\n";
+      for (const HardPicture& picture : HardPictures(*row.family)) html += FigureHtml(picture.pixels, kPatch, picture.caption);
+      html += "</div>\n";
+    }
     html += "</section>\n";
   }
-  html += "</body>\n</html>\n";
+  return html + "</body>\n</html>\n";
+}
 
-  ReplaceFile(file, html);
+std::string FileStem(const CheckCase& row) {
+  std::string stem = row.scene + "-" + row.variant + (row.hard.empty() ? "" : "-" + row.hard);
+  for (char& c : stem) {
+    if (!std::isalnum(static_cast<unsigned char>(c)) && std::string_view("+=.-").find(c) == std::string_view::npos) c = '_';
+  }
+  return stem;
+}
+
+// What XML 1.0 does not hold (control characters, which a driver's log may have) is left out.
+std::string InXml(const std::string& text) {
+  std::string clean;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') clean += c;
+  }
+  return Escaped(clean);
+}
+
+std::string JUnitOf(const CheckResult& result, const std::map<const CheckCase*, std::vector<std::string>>& files) {
+  std::map<std::string, std::vector<const CheckCase*>> suites;
+  for (const CheckCase& row : result.cases) suites[row.scene].push_back(&row);
+  const auto failed = [](const std::vector<const CheckCase*>& rows) {
+    return std::ranges::count_if(rows, [](const CheckCase* row) { return !row->failures.empty(); });
+  };
+  std::string cases;
+  std::ptrdiff_t failures = 0;
+  for (const auto& [name, rows] : suites) {
+    failures += failed(rows);
+    cases += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n", InXml(name), rows.size(), failed(rows));
+    for (const CheckCase* row : rows) {
+      cases += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", InXml(row->hard.empty() ? name : name + "." + row->variant),
+                           InXml(row->hard.empty() ? row->variant : row->hard));
+      if (row->failures.empty()) {
+        cases += "/>\n";
+        continue;
+      }
+      std::string text;
+      for (const CheckFailure& failure : row->failures) text += fmt::format("{}: {}\n", Name(failure.kind), failure.message);
+      if (!row->rerun.empty()) text += row->rerun + "\n";
+      for (const std::string& file : files.at(row)) text += fmt::format("[[ATTACHMENT|{}]]\n", file);
+      cases += fmt::format(">\n      <failure type=\"{}\" message=\"{}\">{}</failure>\n    </testcase>\n", Name(row->failures[0].kind),
+                           InXml(row->failures[0].message), InXml(text));
+    }
+    cases += "  </testsuite>\n";
+  }
+  return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"arealab check\" tests=\"{}\" failures=\"{}\">\n{}</testsuites>\n",
+                     result.cases.size(), failures, cases);
+}
+
+}  // namespace
+
+void WriteCheckReport(const CheckResult& result, const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove_all(folder / "pictures", ignored);
+  std::map<const CheckCase*, std::vector<std::string>> files;
+  for (const CheckCase& row : result.cases) {
+    if (row.failures.empty()) continue;
+    std::vector<std::string>& of_case = files[&row];
+    const int width = row.family ? kPatch : row.image ? row.image->width : 0;
+    for (const HardPicture& picture : PicturesOf(row)) {
+      const fs::path file = folder / "pictures" / fmt::format("{}-{}.png", FileStem(row), picture.name);
+      ReplaceFile(file, PngBytes(picture.pixels, width));
+      of_case.push_back(file.string());
+    }
+  }
+  if (result.failures() > 0) {
+    ReplaceFile(folder / "check.html", PageOf(result));
+  } else {
+    fs::remove(folder / "check.html", ignored);
+  }
+  ReplaceFile(folder / "junit.xml", JUnitOf(result, files));
 }
 
 }  // namespace arealab

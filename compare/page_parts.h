@@ -56,7 +56,10 @@ Rgb Color(const std::array<Rgb, kCount>& palette, double t) {
   return color;
 }
 
-// The figure of a picture, as PNG inside the page; row 0 is the top.
+// The bytes of a PNG file; row 0 is the top.
+std::string PngBytes(const std::vector<Rgb>& pixels, int width);
+
+// The figure of a picture, as PNG inside the page.
 std::string FigureHtml(const std::vector<Rgb>& pixels, int width, const std::string& caption);
 
 // Text that stands in HTML.

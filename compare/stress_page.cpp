@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "compare/content_hash.h"
 #include "compare/page_parts.h"
 #include "scenes/replace_file.h"
+#include "scenes/error.h"
 
 namespace arealab {
 namespace {
@@ -39,6 +45,19 @@ std::string SceneFile(const VariantStress& variant, const FamilyResult& family) 
   std::string folder = variant.name;
   std::replace(folder.begin(), folder.end(), '@', '_');
   return fmt::format("cases/{}/{}.toml", folder, family.family->name);
+}
+
+std::string SceneOf(const VariantStress& variant, const FamilyResult& family) {
+  return CaseScene(family.worst_case, fmt::format("{}: {}", variant.name, family.family->sentence));
+}
+
+std::string InAddress(const std::string& text) {
+  std::string address;
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || std::string_view("-._~,=:/[]").find(c) != std::string_view::npos;
+    address += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return address;
 }
 
 std::string Ramp() {
@@ -80,28 +99,6 @@ std::string Matrix(const StressResult& result) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string Patch(const FamilyResult& family) {
-  if (family.patch_value.empty()) return {};
-  std::vector<Rgb> value, error;
-  float most = 0.0f;
-  for (const float v : family.patch_value) {
-    if (std::isfinite(v)) most = std::max(most, v);
-  }
-  for (std::size_t i = 0; i < family.patch_value.size(); ++i) {
-    const float v = family.patch_value[i];
-    Rgb shown = kMagenta;
-    if (std::isfinite(v)) {
-      const double linear = most > 0.0f ? std::clamp(static_cast<double>(v / most), 0.0, 1.0) : 0.0;
-      shown.fill(static_cast<std::uint8_t>(std::lround(255.0 * std::pow(linear, 1.0 / 2.2))));
-    }
-    value.push_back(shown);
-    error.push_back(ErrorColor(family.patch_error[i]));
-  }
-  return "<div class=\"pictures\">" +
-         FigureHtml(value, kPatch, fmt::format("in float; white is {:.2g} of the light", most)) +
-         FigureHtml(error, kPatch, "rounding error") + "</div>";
-}
-
 std::string Detail(const StressResult& result, std::size_t v, const FamilyResult& family) {
   const VariantStress& variant = result.variants[v];
   std::string html =
@@ -113,20 +110,27 @@ std::string Detail(const StressResult& result, std::size_t v, const FamilyResult
   html += fmt::format(
       "<p>{} cases: {} not finite ({} where min and max pass a NaN on), {} negative; rounding error {:.2g} "
       "at 99.9 %, {:.2g} at "
-      "worst; backward error {:.2g} ulps{}; from the ideal form {:.2g}; half-float tables {:.2g}.</p>\n",
+      "worst; backward error {:.2g} ulps{}; from the ideal form {:.2g}; half-float tables {:.2g}{}.</p>\n",
       family.cases, family.nonfinite, family.hidden, family.negative, family.p999, family.worst,
       family.backward, family.family->ill_conditioned ? " (what it is judged by)" : "", family.approximation,
-      family.half_tables);
+      family.half_tables,
+      family.fp16_cases == 0 ? ""
+                             : fmt::format("; fp16: {} of {} not finite, {:.2g} at 99.9 %", family.fp16_nonfinite,
+                                           family.fp16_cases, family.fp16_p999));
   if (!family.cause.empty()) {
     html +=
         fmt::format("<p class=\"note\">Looser bounds, {:g}, {:g} and {:g} ulps: {}.</p>\n",
                     family.bounds.worst, family.bounds.p999, family.bounds.backward, Escaped(family.cause));
   }
-  html += Patch(family);
+  if (!family.patch_value.empty()) {
+    html += "<div class=\"pictures\">";
+    for (const HardPicture& picture : HardPictures(family)) html += FigureHtml(picture.pixels, kPatch, picture.caption);
+    html += "</div>";
+  }
   html += fmt::format(
-      "<pre>arealab stress --technique '{}' --case '{}'</pre>\n<p><a href=\"{}\">as a "
+      "<pre>arealab stress --technique '{}' --case '{}'</pre>\n<p><a download=\"{}-{}.toml\" href=\"data:text/plain;charset=utf-8,{}\">as a "
       "scene</a></p>\n</details>\n",
-      Escaped(variant.name), CaseLine(family.worst_case), SceneFile(variant, family));
+      Escaped(variant.name), CaseLine(family.worst_case), Escaped(variant.name), family.family->name, InAddress(SceneOf(variant, family)));
   return html;
 }
 
@@ -165,6 +169,25 @@ std::string Paths(const VariantStress& variant) {
   return html + "</div></details>\n";
 }
 
+std::string LowerPrecision(const StressResult& result) {
+  std::string rows;
+  const auto share = [](std::int64_t part, std::int64_t whole) {
+    return part == 0 ? std::string("0") : fmt::format("{:.2g} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+  };
+  for (const VariantStress& variant : result.variants) {
+    const auto ordinary = std::ranges::find(variant.families, &StressFamilies()[0], &FamilyResult::family);
+    if (ordinary == variant.families.end() || variant.fp16_cases() == 0) continue;
+    rows += fmt::format("<tr><th class=\"name\">{}</th><td>{:.1e}</td><td>{}</td><td>{:.1e}</td><td>{:.1e}</td><td>{}</td></tr>\n", Escaped(variant.name),
+                        ordinary->half_tables, share(ordinary->fp16_nonfinite, ordinary->fp16_cases), ordinary->fp16_median, ordinary->fp16_p999,
+                        share(variant.fp16_nonfinite(), variant.fp16_cases()));
+  }
+  if (rows.empty()) return {};
+  return "<h2>Lower precision</h2>\n<p class=\"note\">Half-float tables: the error that they add, at 99.9 %. fp16: the same text with every input and "
+         "every result a half float (nearest, infinite from 65520, 0 below 6.1e-5), against float on the same inputs; ordinary lights, and in the last "
+         "column every family. Told, not judged.</p>\n<div class=\"scroll\"><table class=\"figures\"><thead><tr><th></th><th>half tables</th><th>fp16 not finite</th>"
+         "<th>median</th><th>99.9 %</th><th>not finite, all families</th></tr></thead>\n<tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
 constexpr const char* kStressStyle = R"(
 :root { color-scheme: light dark; --line: #8885; --accent: light-dark(#9a4a00, #ffb866); --warn: light-dark(#b3261e, #ff8a80); }
 body { margin: 2rem auto; width: min(100% - 2rem, 92rem); font: 15px/1.55 system-ui, "Segoe UI", Roboto, "Noto Sans", Arial, sans-serif; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
@@ -174,6 +197,7 @@ a { color: var(--accent); } .note { opacity: .8; max-width: 92ch; margin: .3rem 
 th { font-weight: 500; text-align: left; white-space: nowrap; padding-right: .6rem; } th i { opacity: .6; font-size: .9em; }
 th.column { vertical-align: bottom; padding: 0; height: 7rem; } th.column span { writing-mode: vertical-rl; transform: rotate(180deg); }
 td { padding: 0; min-width: 2.9rem; text-align: center; } td.none { opacity: .4; }
+.figures td, .figures th { padding: .2rem .8rem .2rem 0; text-align: left; }
 td a { display: block; padding: .22rem .15rem; border-radius: 4px; text-decoration: none; white-space: nowrap; }
 td a:hover { outline: 2px solid var(--accent); }
 details { border-top: 1px solid var(--line); padding: .35rem 0; } summary { cursor: pointer; } details:target { outline: 2px solid var(--accent); outline-offset: 4px; border-radius: 4px; }
@@ -194,12 +218,40 @@ addEventListener("hashchange", show); show();
 
 }  // namespace
 
-void WriteStressPage(const StressResult& result, const fs::path& folder) {
+std::vector<HardPicture> HardPictures(const FamilyResult& family) {
+  float most = 0.0f;
+  for (const float v : family.patch_double) {
+    if (std::isfinite(v)) most = std::max(most, v);
+  }
+  const auto shown = [&](const std::vector<float>& values) {
+    std::vector<Rgb> pixels;
+    for (const float v : values) {
+      Rgb code = kMagenta;
+      if (std::isfinite(v)) {
+        const double linear = most > 0.0f ? std::clamp(static_cast<double>(v / most), 0.0, 1.0) : 0.0;
+        code.fill(static_cast<std::uint8_t>(std::lround(255.0 * std::pow(linear, 1.0 / 2.2))));
+      }
+      pixels.push_back(code);
+    }
+    return pixels;
+  };
+  std::vector<Rgb> error;
+  for (const float e : family.patch_error) error.push_back(ErrorColor(e));
+  std::vector<HardPicture> pictures{
+      {"result", fmt::format("in float; white is {:.2g} of the light", most), shown(family.patch_value)}};
+  const bool seen = std::ranges::any_of(family.patch_error, [](float e) { return !(e < 1e-2f); });
+  if (seen || !family.failures.empty())
+    pictures.push_back({"reference", "the same text in double", shown(family.patch_double)});
+  pictures.push_back({"difference", "rounding error, 1e-7 to 1", std::move(error)});
+  return pictures;
+}
+
+std::string StressPage(const StressResult& result, const std::string& report) {
   const int failures = result.failures();
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\">"
-      "<title>AreaLab: hard cases</title>\n<style>{}</style></head>\n<body>\n<h1>Hard cases</h1>\n"
+      "<title>AreaLab: hard cases</title>\n<style>{}</style></head>\n<body>\n{}<h1>Hard cases</h1>\n"
       "<p>{} cases of each technique, seed {}, {}. {}</p>\n"
       "<p class=\"note\">Colour and figure: the worst rounding error, |float − the same text in double| over "
       "the larger of the value "
@@ -207,11 +259,13 @@ void WriteStressPage(const StressResult& result, const fs::path& folder) {
       "are only shown are their "
       "authors', and may. *: an input's last bit moves the answer, and "
       "what is judged is how many of the inputs' ulps explain the error. A cell opens its worst case.</p>\n",
-      kStressStyle, result.cases, result.seed, Escaped(result.renderer),
+      kStressStyle, report.empty() ? "" : fmt::format("<p><a href=\"{}\">the report</a></p>\n", report), result.cases,
+      result.seed, Escaped(result.renderer),
       failures == 0 ? "Every form that is judged keeps its bounds."
                     : fmt::format("{} bounds exceeded.", failures),
       Ramp());
   html += Matrix(result);
+  html += LowerPrecision(result);
   html +=
       "<h2>Along paths</h2>\n<p class=\"note\">Grey: the value. Red: its difference from the ideal form, "
       "exact in double, "
@@ -221,15 +275,44 @@ void WriteStressPage(const StressResult& result, const fs::path& folder) {
   }
   html += "<h2>Worst cases</h2>\n";
   for (std::size_t v = 0; v < result.variants.size(); ++v) {
-    for (const FamilyResult& family : result.variants[v].families) {
-      html += Detail(result, v, family);
-      ReplaceFile(folder / SceneFile(result.variants[v], family),
-                  CaseScene(family.worst_case,
-                            fmt::format("{}: {}", result.variants[v].name, family.family->sentence)));
-    }
+    for (const FamilyResult& family : result.variants[v].families) html += Detail(result, v, family);
   }
-  html += fmt::format("<script>{}</script>\n</body>\n</html>\n", kScript);
-  ReplaceFile(folder / "stress.html", html);
+  return html + fmt::format("<script>{}</script>\n</body>\n</html>\n", kScript);
+}
+
+void WriteStressPage(const StressResult& result, const fs::path& folder) {
+  for (const VariantStress& variant : result.variants) {
+    for (const FamilyResult& family : variant.families) ReplaceFile(folder / SceneFile(variant, family), SceneOf(variant, family));
+  }
+  ReplaceFile(folder / "stress.html", StressPage(result, ""));
+}
+
+HardCasesPage CachedStressPage(Context& context, const ShaderLibrary& library, const StressOptions& options, const std::string& report,
+                               const fs::path& cache) {
+  ContentHash hash;
+  hash.Program();
+  hash.Text(context.renderer() + context.version() + report);
+  hash.Value(options.cases);
+  hash.Value(options.fp16);
+  for (const Variant& variant : options.variants) hash.Text(variant.Name());
+  const fs::path file = cache / fmt::format("{}.hard-cases", hash.Name());
+  HardCasesPage page;
+  page.techniques = static_cast<int>(options.variants.size());
+  page.cases = options.cases;
+  std::ifstream in(file, std::ios::binary);
+  if (in >> page.failures && in.get() == '\n') {
+    page.html.assign(std::istreambuf_iterator<char>(in), {});
+    if (page.html.ends_with("</html>\n")) return page;
+  }
+  const StressResult result = Stress(context, library, options);
+  page.failures = result.failures();
+  page.html = StressPage(result, report);
+  try {
+    ReplaceFile(file, fmt::format("{}\n{}", page.failures, page.html));
+  } catch (const InputError&) {
+    // The page is there all the same.
+  }
+  return page;
 }
 
 }  // namespace arealab

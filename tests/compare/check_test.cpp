@@ -228,13 +228,48 @@ TEST_F(ImageCheck, TheGoldenTestHasAThreshold) {
 
 TEST_F(ImageCheck, ThePageShowsTheFailureAndHowToRepeatIt) {
   fs::copy_file(Golden("drobot"), Golden("ltc"), fs::copy_options::overwrite_existing);
-  const fs::path page = folder_.path() / "out" / "check.html";
-  WriteCheckPage(Run(false), "arealab check", " --golden 'g<o>'", page);
-  const std::string html = ReadText(page);
-  EXPECT_THAT(html, HasSubstr("<pre>arealab check gloss --technique ltc --golden 'g&lt;o&gt;'</pre>"));
+  const fs::path out = folder_.path() / "out";
+  WriteCheckReport(Run(false), out);
+  const std::string html = ReadText(out / "check.html");
+  EXPECT_THAT(html, HasSubstr("<pre>arealab check gloss --technique ltc</pre>"));
   EXPECT_THAT(html, HasSubstr("−2 % … +2 %"));
   EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBORw0KGgo"));  // PNG's signature
   EXPECT_THAT(html, Not(HasSubstr("<h2>gloss: drobot")));
+  for (const char* name : {"result", "reference", "difference"})
+    EXPECT_THAT(ReadText(out / fmt::format("pictures/gloss-ltc-{}.png", name)), HasSubstr("PNG")) << name;
+  EXPECT_FALSE(fs::exists(out / "pictures/gloss-drobot-result.png"));
+  const std::string junit = ReadText(out / "junit.xml");
+  EXPECT_THAT(junit, HasSubstr("<testsuites name=\"arealab check\" tests=\"2\" failures=\"1\">"));
+  EXPECT_THAT(junit, HasSubstr("<testcase classname=\"gloss\" name=\"drobot\"/>"));
+  EXPECT_THAT(junit, HasSubstr("<failure type=\"golden\" message=\""));
+  EXPECT_THAT(junit, HasSubstr("[[ATTACHMENT|" + (out / "pictures/gloss-ltc-difference.png").string()));
+}
+
+// A technique that a user brings passes, and does not once it lets roughness 0 through.
+TEST_F(ImageCheck, AUsersTechniqueGoesThroughTheHardFamilies) {
+  folder_.Write("glsl/techniques/mine.glsl", *ShaderLibrary().Find("techniques/point.glsl"));
+  const ShaderLibrary library(folder_.path() / "glsl");
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  CheckOptions options;
+  options.scenes = {FindScene(kScene)};
+  options.golden = folder_.path() / "mine";
+  options.hard_cases = 2400;
+  options.repeated = " --glsl 'a<b'";
+  options.variants = {ParseVariant(techniques, "mine")};
+  options.update = true;
+  EXPECT_THAT(KindsOf(Check(*context_, library, options)), IsEmpty());
+  options.update = false;
+  const CheckResult good = Check(*context_, library, options);
+  EXPECT_THAT(KindsOf(good), IsEmpty());
+  EXPECT_GE(good.hard, 24);
+  std::string surface = *ShaderLibrary().Find("surface.glsl");
+  const std::string floor = "kMinAlpha = 1e-4";
+  folder_.Write("glsl/surface.glsl", surface.replace(surface.find(floor), floor.size(), "kMinAlpha = 0.0"));
+  const CheckResult bad = Check(*context_, library, options);
+  EXPECT_THAT(KindsOf(bad), Contains("mine: hard case"));
+  WriteCheckReport(bad, folder_.path() / "out");
+  EXPECT_THAT(ReadText(folder_.path() / "out/check.html"), HasSubstr("<pre>arealab stress --technique mine --case 'shape="));
+  EXPECT_THAT(ReadText(folder_.path() / "out/check.html"), HasSubstr(" --glsl 'a&lt;b'</pre>"));
 }
 
 // The stored goldens tell any two variants that share a scene apart, somewhere.
