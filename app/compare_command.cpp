@@ -13,6 +13,7 @@
 #include "compare/claims.h"
 #include "compare/harness.h"
 #include "compare/report.h"
+#include "compare/stress_page.h"
 #include "compare/sweep.h"
 #include "scenes/error.h"
 
@@ -178,6 +179,18 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
       results.claims = CachedClaimsPages(ChosenSources(arguments), context->renderer() + context->version() + compilers, options.cache,
                                          [&] { return std::make_unique<ClaimBench>(*context, library, options.cost.get()); });
       LinkClaimsPages(results.claims, "index.html");
+    }
+    if (arguments.scenes.empty() && arguments.techniques.empty() && arguments.sources.empty() && arguments.common.glsl.empty()) {
+      StressOptions stress;
+      for (const Technique& technique : techniques) {
+        if (technique.yardstick) continue;
+        stress.variants.push_back(DefaultVariant(technique));
+        stress.judged.push_back(true);
+      }
+      stress.cases = 24000;
+      stress.pictures = true;
+      stress.progress = [&](const std::string& what, double) { progress.Show("hard cases: " + what, 1.0); };
+      results.hard_cases = CachedStressPage(*context, library, stress, "index.html", options.cache);
     }
     results.command = command_line;
     results.version = AREALAB_VERSION;

@@ -212,10 +212,7 @@ std::optional<ClaimsPage> ReadClaimsPage(const ClaimSource& source, const std::o
 std::vector<ClaimsPage> CachedClaimsPages(const std::vector<ClaimSource>& sources, const std::string& platform,
                                           const std::filesystem::path& cache, const std::function<std::unique_ptr<ClaimBench>()>& bench) {
   ContentHash hash;
-  std::ifstream program("/proc/self/exe", std::ios::binary);  // shader text and tables are in it
-  for (std::vector<char> block(1 << 20); program.read(block.data(), static_cast<std::streamsize>(block.size())), program.gcount() > 0;) {
-    hash.Bytes(block.data(), static_cast<std::size_t>(program.gcount()));
-  }
+  hash.Program();
   hash.Text(platform);
   std::unique_ptr<ClaimBench> made;
   std::vector<ClaimsPage> pages;

@@ -5,8 +5,10 @@
 
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace arealab {
 
@@ -32,6 +34,12 @@ class ContentHash {
   void Text(const std::string& text) {
     Value(text.size());
     Bytes(text.data(), text.size());
+  }
+  // The running program: its code, and the shader text and tables in it.
+  void Program() {
+    std::ifstream program("/proc/self/exe", std::ios::binary);
+    for (std::vector<char> block(1 << 20); program.read(block.data(), static_cast<std::streamsize>(block.size())), program.gcount() > 0;)
+      Bytes(block.data(), static_cast<std::size_t>(program.gcount()));
   }
   std::uint64_t low() const { return low_; }
   std::string Name() const { return fmt::format("{:016x}{:016x}", high_, low_); }

@@ -172,12 +172,31 @@ std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pi
 namespace {
 
 ErrorSplit SplitError(Renderer& renderer, const Variant& variant, const RadianceImage& image, const RadianceImage& truth) {
-  const auto error = [&](const RadianceImage& a, const RadianceImage& b) {
-    return CompareImages(TotalRadiance(a), TotalRadiance(b), truth.width).rel_rmse;
-  };
   const RadianceImage in_double = renderer.Shade(variant, Precision::kDouble),
                       ideal = renderer.Shade(IdealVariant(variant), Precision::kDouble);
-  return {error(ideal, truth), error(in_double, ideal), error(image, in_double)};
+  const std::vector<glm::vec3> lit = TotalRadiance(truth);
+  double mean = 0.0;
+  std::size_t count = 0;
+  for (const glm::vec3& v : lit) {
+    mean += Luminance(v);
+    count += v != glm::vec3(0.0f);
+  }
+  const double floor = std::max(0.01 * mean / static_cast<double>(std::max<std::size_t>(count, 1)), 1e-30);
+  ErrorSplit split;
+  const auto part = [&](const char* name, const RadianceImage& a, const RadianceImage& b) {
+    const std::vector<glm::vec3> first = TotalRadiance(a), second = TotalRadiance(b);
+    ErrorSplit::Map map{name, {}};
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      const double reference = Luminance(second[i]);
+      map.magnitude.push_back(static_cast<float>(std::abs(Luminance(first[i]) - reference) / std::max(reference, floor)));
+    }
+    split.maps.push_back(std::move(map));
+    return CompareImages(first, second, truth.width).rel_rmse;
+  };
+  split.model = part("model", ideal, truth);
+  split.approximation = part("approximation", in_double, ideal);
+  split.rounding = part("rounding", image, in_double);
+  return split;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <mutex>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -23,6 +24,7 @@
 #include "compare/image_files.h"
 #include "compare/metrics.h"
 #include "compare/page_data.h"
+#include "compare/page_parts.h"
 #include "compare/pareto.h"
 #include "compare/results_json.h"
 #include "glsl/shader_library.h"
@@ -240,6 +242,26 @@ void WriteThumbnail(const fs::path& file, const std::vector<glm::vec3>& picture,
   WritePng(file, small, columns, exposure);
 }
 
+// Whose error it is, pixel by pixel: the largest of each square of pixels, on a logarithmic scale from 1e-7 to 1.
+void WriteSplitMaps(const fs::path& images, const std::string& stem, const ErrorSplit& split, int width) {
+  const int block = std::max(1, (width + kThumbnailSide - 1) / kThumbnailSide), columns = width / block;
+  for (const ErrorSplit::Map& map : split.maps) {
+    const int rows = static_cast<int>(map.magnitude.size()) / width / block;
+    std::vector<Rgb> pixels;
+    for (int i = 0; i < rows * columns; ++i) {
+      float most = 0.0f;
+      for (int y = i / columns * block; y < (i / columns + 1) * block; ++y) {
+        for (int x = i % columns * block; x < (i % columns + 1) * block; ++x) {
+          const float m = map.magnitude[static_cast<std::size_t>(y * width + x)];
+          most = std::isfinite(m) && std::isfinite(most) ? std::max(most, m) : std::numeric_limits<float>::infinity();
+        }
+      }
+      pixels.push_back(std::isfinite(most) ? Color(kMagnitude, 1.0 + std::log10(std::max(static_cast<double>(most), 1e-7)) / 7.0) : Rgb{255, 0, 255});
+    }
+    WriteText(images / fmt::format("{}-{}.png", stem, map.name), PngBytes(pixels, columns));
+  }
+}
+
 // Steps of sixteen in half bits between the shadowed truth and the unshadowed one: at most eight bits' error,
 // 0.4 to 0.8 %, below the shadowed truth's own, and half of the bytes.
 void Coarsen(HalfImage& shadowed, const HalfImage& truth) {
@@ -431,6 +453,7 @@ void ReportWriter::Add(const SceneResult& scene) {
     const std::string stem = FileName(variant.name, &taken);
     pictures.stems.push_back(variant.image ? std::optional(stem) : std::nullopt);
     if (variant.image) add(variant.image, stem, Job::Kind::kVariant, &variant);
+    WriteSplitMaps(root / "images" / pictures.folder, stem, variant.split, scene.width);
   }
   pictures.emission = scene.emission != nullptr;
   if (pictures.emission) {
@@ -453,6 +476,7 @@ void ReportWriter::Finish(const Results& results) {
   for (const ClaimSource& source : ClaimSources()) page["sources"].push_back(source.citation);
   page["fit"] = Json::parse(ShaderLibrary().Find("tables/quality.json").value());
   for (const ClaimsPage& claims : results.claims) WriteText(root / fmt::format("claims-{}.html", claims.name), claims.html);
+  if (!results.hard_cases.html.empty()) WriteText(root / "hard-cases.html", results.hard_cases.html);
   fs::create_directories(root / "plots");
   for (std::size_t s = 0; s < state_->scenes.size(); ++s) {
     const Pictures& pictures = state_->scenes[s];

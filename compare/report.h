@@ -21,7 +21,9 @@ void CheckReportDirectory(const std::filesystem::path& directory);
 //   images/SCENE/VARIANT.exr layers diffuse and specular (compare/image_files.h); VARIANT "truth" is the
 //   ground truth images/SCENE/VARIANT.png the picture at the scene's exposure, emitters included
 //   plots/SCENE.svg, plots/all scenes.svg  accuracy against cost, where a cost is known (compare/pareto.h)
+//   images/SCENE/VARIANT-model.png, -approximation.png, -rounding.png  where the error was split
 //   claims-SOURCE.html       what each source says and whether it holds (compare/claims.h)
+//   hard-cases.html          techniques by hard families (compare/stress_page.h)
 //   data/SCENE/VARIANT.js    what the page loads: the same values as the EXR's
 // VARIANT "truth-shadowed" is the truth with visibility, where a shadow matters; its values are within 0.8 % of
 // the computed ones, a fraction of their own error.

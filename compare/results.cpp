@@ -142,7 +142,10 @@ void SceneResult::ReleaseImages() {
   truth.reset();
   emission.reset();
   if (shadow) shadow->image.reset();
-  for (VariantResult& variant : variants) variant.image.reset();
+  for (VariantResult& variant : variants) {
+    variant.image.reset();
+    variant.split.maps.clear();
+  }
 }
 
 nlohmann::ordered_json IsaObject(const std::map<std::string, GpuCost>& costs) {
@@ -182,6 +185,9 @@ nlohmann::ordered_json ResultsObject(const Results& results) {
                               {"fails", page.fails},
                               {"unknown", page.unknown}});
   }
+  const HardCasesPage& hard = results.hard_cases;
+  json["hard_cases"] = hard.html.empty() ? Json(nullptr)
+                                         : Json{{"techniques", hard.techniques}, {"cases", hard.cases}, {"failures", hard.failures}};
   return json;
 }
 

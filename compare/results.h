@@ -55,6 +55,12 @@ struct GpuCost {
 // (the variant in double against the ideal form), rounding's (in float against the same text in double).
 struct ErrorSplit {
   double model = kNotMeasured, approximation = kNotMeasured, rounding = kNotMeasured;
+  // The same in each pixel: |difference| of luminance over the reference's, at least over 1 % of the truth's mean. Empty where not asked for.
+  struct Map {
+    const char* name;  // "model"
+    std::vector<float> magnitude;
+  };
+  std::vector<Map> maps = {};
 };
 
 struct VariantResult {
@@ -112,6 +118,13 @@ struct SceneResult {
   void ReleaseImages();
 };
 
+// The page of the hard cases; compare/stress_page.h.
+struct HardCasesPage {
+  int techniques = 0, failures = 0;
+  std::int64_t cases = 0;  // of each technique
+  std::string html;        // hard-cases.html, a page that stands alone; empty: none was made
+};
+
 // What one source's text says, checked; compare/claims.h.
 struct ClaimsPage {
   std::string name, citation, title;
@@ -130,6 +143,7 @@ struct Results {
   std::string no_isa;                          // why there are none
   std::vector<SceneResult> scenes;
   std::vector<ClaimsPage> claims;
+  HardCasesPage hard_cases;
 };
 
 // results.json: the schema of design.md, version 1, indented; null where not finite or not measured.

@@ -485,6 +485,8 @@ function buildScene() {
   ui.plot = buildPareto([s], "Accuracy against cost", "on this scene");
   if (ui.plot) section.append(ui.plot);
   if (pairs) section.append(pairs);
+  const split = buildSplit(s);
+  if (split) section.append(split);
   const refused = s.variants.filter((v) => !v.supported);
   if (refused.length) {
     section.append(h("section", {}, h("div", { class: "head" }, h("h3", { text: "Not supported here" })),
@@ -553,8 +555,12 @@ const COLUMNS = [
   ["max", "max", (v) => v.error.total.max],
   ["flip", "FLIP", (v) => v.error.total.flip],
   ["nonfinite", "NaN, ∞", (v) => v.nonfinite_pixels],
+  ["model", "model %", (v) => v.error.split.model],
+  ["approximation", "approx. %", (v) => v.error.split.approximation],
+  ["rounding", "rounding %", (v) => v.error.split.rounding],
   ["time", "time × point", (v) => v.time.ratio_to_point],
 ];
+const SPLIT = ["model", "approximation", "rounding"];
 const withSpread = (value, interval) => known(value) && interval ? `${value.toFixed(value < 10 ? 2 : 1)} ± ${((interval[1] - interval[0]) / 2).toFixed(value < 10 ? 2 : 1)}` : "–";
 
 // What stands behind a figure of cost.
@@ -572,7 +578,7 @@ function costHint(key, v) {
 function buildTable(s) {
   const shown = variantsOf(s);
   const gpus = gpusOf([s]);
-  const columns = [...COLUMNS.filter(([key, , value]) => !["time", "flip"].includes(key) || shown.some((v) => known(value(v)))),
+  const columns = [...COLUMNS.filter(([key, , value]) => !["time", "flip", ...SPLIT].includes(key) || shown.some((v) => known(value(v)))),
     ...gpus.map((gpu) => [gpu, gpu, (v) => v.isa && v.isa[gpu] ? v.isa[gpu].core.cycles : null])];
   const head = h("tr"), body = h("tbody");
   for (const [key, title] of columns) {
@@ -599,6 +605,7 @@ function buildTable(s) {
         flip: figure(e.total.flip), nonfinite: String(v.nonfinite_pixels),
         time: [withSpread(v.time.ratio_to_point, v.time.ratio_interval),
           known(v.time.net_ratio_to_point) ? h("span", { class: "sub" }, `net ${withSpread(v.time.net_ratio_to_point, v.time.net_ratio_interval)}`) : null] };
+      for (const part of SPLIT) cells[part] = known(e.split[part]) ? Number((100 * e.split[part]).toPrecision(2)).toString() : "–";
       for (const gpu of gpus) cells[gpu] = v.isa && v.isa[gpu] ? String(v.isa[gpu].core.cycles) : "–";
       return h("tr", { class: v.within_truth_error ? "tied" : null }, columns.map(([key, title]) => {
         if (key === "name") {
@@ -621,6 +628,20 @@ function buildTable(s) {
   return h("section", {}, h("div", { class: "head" }, h("h3", { text: "Figures against truth" }), h("label", { class: "group sortby" }, h("span", { class: "label", text: "sort by" }), select),
     h("p", { class: "note", text: `Total, diffuse and specular are relative RMSE; MAE, p99 and max are in ${s.unit || "the scene's unit"}.${gpus.length ? ` ${gpus.join(", ")}: cycles per wave of 64, of the technique alone, estimated by the GPU's compiler; nothing was run.` : ""} Choose a heading to sort, a pixel to go there.` })),
     h("div", { class: "card" }, h("table", { class: "metrics" }, h("thead", {}, head), body)));
+}
+
+// Of each variant three maps: whose error it is. Their pixels come ready-made: half floats do not hold a rounding error.
+function buildSplit(s) {
+  const split = variantsOf(s).filter((v) => known(v.error.split.rounding));
+  if (!split.length) return null;
+  const said = { model: "ideal form against truth", approximation: "double against ideal form", rounding: "float against double" };
+  const bar = h("span", { class: "split-bar", style: { background: `linear-gradient(90deg, ${Array.from({ length: 17 }, (_, i) => css(magnitudeColor(i / 16))).join(", ")})` } });
+  return h("section", { id: "split", "aria-labelledby": "split-heading" },
+    h("div", { class: "head" }, h("h3", { id: "split-heading", text: "Whose error it is" }),
+      h("p", { class: "note" }, "The mathematics', its shortcuts', rounding's: relative to the reference, the largest of each few pixels. 1e-7 ", bar, " 1")),
+    h("div", { class: "split card" }, split.map((v) => h("div", {}, h("b", { text: v.short_name || v.name }),
+      SPLIT.map((part) => h("figure", {}, h("img", { src: `images/${encodeURIComponent(s.folder)}/${encodeURIComponent(v.stem)}-${part}.png`, loading: "lazy", alt: `${part} error of ${v.short_name || v.name}` }),
+        h("figcaption", { text: `${part}: ${Number((100 * v.error.split[part]).toPrecision(2))} % (${said[part]})` })))))));
 }
 
 function buildPairs(s) {
@@ -740,6 +761,17 @@ function buildClaims() {
       h("a", { href: `claims-${encodeURIComponent(page.source)}.html`, text: page.citation }), h("span", { class: "title", text: page.title }),
       h("span", { class: "tallies" }, tally(page.holds, "✓", page.holds === 1 ? "holds" : "hold"), tally(page.partly, "~", page.partly === 1 ? "holds partly" : "hold partly"),
         tally(page.fails, "✗", page.fails === 1 ? "does not hold" : "do not hold"), tally(page.unknown, "?", "not measured"))))));
+}
+
+// The page of the hard cases, or how to make it.
+function buildHardCases() {
+  const hard = results.hard_cases;
+  return h("section", { id: "hard-cases", "aria-labelledby": "hard-heading" },
+    h("div", { class: "head" }, h("h3", { id: "hard-heading", text: "Hard cases" }),
+      hard ? h("p", { class: "note" }, h("a", { href: "hard-cases.html", text: "Techniques by families" }),
+        ` where formulas break: lights at the horizon, in contact, far, thin, mirrors. ${hard.cases.toLocaleString("en")} cases of each of ${hard.techniques} techniques, ` +
+        (hard.failures ? `${hard.failures} bounds exceeded.` : "every bound kept."))
+        : h("p", { class: "note" }, "Not in this report: ", h("code", { text: "arealab stress --out DIR" }), " writes the page of techniques by families.")));
 }
 
 function buildPareto(scenes, title, where) {
@@ -1167,6 +1199,7 @@ const overallPlot = results.scenes.length > 1 ? buildPareto(results.scenes, "Acc
 if (overallPlot) overview.append(overallPlot);
 const claims = buildClaims();
 if (claims) overview.append(claims);
+overview.append(buildHardCases());
 function show() {
   readHash();
   settle();

@@ -558,6 +558,30 @@ TEST(Report, EqualFileNamesAreToldApart) {
   }
 }
 
+// Three maps of a variant whose error was split, on one scale: black below 1e-7, and none where it was not.
+TEST(Report, SaysWhoseErrorItIsPixelByPixel) {
+  const Folder folder;
+  Results results = Small();
+  SceneResult& scene = results.scenes[0];
+  VariantResult& variant = scene.variants[0];
+  const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
+  variant.split = {0.1, 1e-3, 1e-7, {}};
+  variant.split.maps = {{"model", std::vector<float>(pixels, 1.0f)}, {"approximation", std::vector<float>(pixels, 0.0f)},
+                        {"rounding", std::vector<float>(pixels, std::numeric_limits<float>::quiet_NaN())}};
+  results.hard_cases = {3, 1, 24000, "<html>the hard cases</html>\n"};
+  WriteReport(results, folder / "out");
+  int maps = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "out/images")) {
+    for (const char* part : {"-model.png", "-approximation.png", "-rounding.png"})
+      maps += entry.path().filename().string().ends_with(part);
+  }
+  EXPECT_EQ(maps, 3);
+  EXPECT_TRUE(fs::exists(folder / "out/hard-cases.html"));
+  const nlohmann::json json = nlohmann::json::parse(ResultsJson(results));
+  EXPECT_EQ(json["hard_cases"]["failures"], 1);
+  EXPECT_EQ(json["scenes"][0]["variants"][0]["error"]["split"]["model"], 0.1);
+}
+
 TEST(Report, ReplacesAnEarlierReportAsAWhole) {
   const Folder folder;
   WriteReport(Small(), folder / "report/");
