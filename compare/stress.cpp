@@ -110,6 +110,7 @@ const std::array kAllowances{
     StressAllowance{"reference", "contact", {1e-3, 2e-5, kUnbounded}, kPolar},
     StressAllowance{"reference", "corners", {1e-3, 2e-5, kUnbounded}, kPolar},
     StressAllowance{"reference", "edge_on", {1e-3, 2e-5, kUnbounded}, kPolar},
+    StressAllowance{"reference", "ordinary", {4e-3, 2e-5, 8.0}, kPolar},
     StressAllowance{"reference", "view_grazing", {1e-3, 2e-5, 3e3}, kPolar},
     StressAllowance{"reference", "far", {kUnbounded, kUnbounded, kUnbounded}, kPolar},
     StressAllowance{"reference", "huge", {1.0, 0.1, 8.0}, kPolar},
@@ -170,6 +171,7 @@ const std::array kApproximationAllowances{
     ApproximationAllowance{"light_field", "thin", 1.0, kPairs},
     ApproximationAllowance{"light_field", "roughness", 0.4, kSharp},
     ApproximationAllowance{"light_field", "mirror", 0.03, kSharp},
+    ApproximationAllowance{"light_field", "*", 5e-3, kSharp},
     ApproximationAllowance{"hill", "thin", 1.0, kPairs},
     ApproximationAllowance{"hill", "*", 0.02, "the fit of the clipped proxy sphere is within 6.2e-3 of the light"},
 };

@@ -13,12 +13,8 @@ vec3 EdgeVector(vec4 v0, vec4 v1, bool lambert) {
   return ratio * c;
 }
 
-// Where the side from a corner above to one below meets the horizon. Its place, not a multiple of it: the fourth power of a length is
-// taken later, and lights are 1e-5 to 1e5 m large.
-vec3 MeetHorizon(vec3 above, vec3 below) {
-  float inverse = 1.0 / max(above.z - below.z, 1e-30);
-  return vec3((above.z * below.x - below.z * above.x) * inverse, (above.z * below.y - below.z * above.y) * inverse, 0.0);
-}
+// Where the side from a corner above to one below meets the horizon; only its direction counts.
+vec3 MeetHorizon(vec3 above, vec3 below) { return above.z * below - below.z * above; }
 
 // From the sum of a polygon's edges.
 vec3 VectorOfEdges(vec3 sum) { return vec3(sum.x * (0.5 / kPi), sum.y * (0.5 / kPi), AsFormFactor(sum.z * (0.5 / kPi))); }
