@@ -33,6 +33,7 @@ struct CompareArguments {
   bool all_variants = false;
   bool timing = false;
   bool split = false;
+  bool hard_cases = false;
   std::vector<std::string> sources;
 };
 
@@ -180,7 +181,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
                                          [&] { return std::make_unique<ClaimBench>(*context, library, options.cost.get()); });
       LinkClaimsPages(results.claims, "index.html");
     }
-    if (arguments.scenes.empty() && arguments.techniques.empty() && arguments.sources.empty() && arguments.common.glsl.empty()) {
+    if (arguments.hard_cases) {
       StressOptions stress;
       for (const Technique& technique : techniques) {
         if (technique.yardstick) continue;
@@ -224,6 +225,8 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
                       "METRIC=X: exit with status 1 where a variant's total error exceeds X, e.g. rel_rmse=0.05");
   command->add_flag("--split", arguments->split,
                     "say whose error it is, in results.json: the mathematics', its shortcuts' or rounding's");
+  command->add_flag("--hard-cases", arguments->hard_cases,
+                    "add the page of the hard cases: each technique's default form by families (a minute or two, then cached)");
   command->add_flag("--timing", arguments->timing,
                     "time the lighting pass of every variant as a ratio to point, in interleaved rounds");
   command->add_option("--gpu", arguments->gpus,

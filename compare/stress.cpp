@@ -167,6 +167,7 @@ const std::array kApproximationAllowances{
     ApproximationAllowance{"*", "on_corner", kInfinity, kAmbiguous},
     ApproximationAllowance{"*", "corners", kInfinity, kAmbiguous},
     ApproximationAllowance{"*", "normal_map", kInfinity, "of normals that are not unit a value is asked, not which"},
+    ApproximationAllowance{"*", "tube_beside", kInfinity, "an outline's chord passes through the point or next to it"},
     ApproximationAllowance{"ltc", "thin", 1.0, kPairs},
     ApproximationAllowance{"light_field", "thin", 1.0, kPairs},
     ApproximationAllowance{"light_field", "roughness", 0.4, kSharp},

@@ -697,7 +697,7 @@ PointCase ParseCase(std::string_view line) {
     const auto field = std::ranges::find_if(kFields, [&](const Field& f) { return key == f.name; });
     if (key == "shape") {
       const auto shape = std::ranges::find_if(kLightShapes, [&](LightShape s) { return value == Name(s); });
-      if (shape == kLightShapes.end()) {
+      if (shape == std::end(kLightShapes)) {
         throw InputError(fmt::format("--case: shape={}; expected rectangle, disk, sphere, ellipse, polygon or tube", value));
       }
       c.shape = *shape;

@@ -771,7 +771,7 @@ function buildHardCases() {
       hard ? h("p", { class: "note" }, h("a", { href: "hard-cases.html", text: "Techniques by families" }),
         ` where formulas break: lights at the horizon, in contact, far, thin, mirrors. ${hard.cases.toLocaleString("en")} cases of each of ${hard.techniques} techniques, ` +
         (hard.failures ? `${hard.failures} bounds exceeded.` : "every bound kept."))
-        : h("p", { class: "note" }, "Not in this report: ", h("code", { text: "arealab stress --out DIR" }), " writes the page of techniques by families.")));
+        : h("p", { class: "note" }, "Not in this report: ", h("code", { text: "arealab compare --hard-cases" }), " adds the page of techniques by families, ", h("code", { text: "arealab stress --out DIR" }), " writes it alone.")));
 }
 
 function buildPareto(scenes, title, where) {
