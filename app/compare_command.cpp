@@ -32,10 +32,13 @@ struct CompareArguments {
   double tolerance = 1e-4;
   bool all_variants = false;
   bool timing = false;
+  bool saving = false;
   bool split = false;
   bool hard_cases = false;
   std::vector<std::string> sources;
 };
+
+constexpr double kSavingSeconds = 2.0;  // a variant and scene
 
 struct Limit {
   std::string metric;
@@ -158,6 +161,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   options.cache = arguments.common.CacheFolder();
   options.split = arguments.split;
   if (arguments.timing) options.timed_against = ParseVariant(techniques, "point");
+  if (arguments.saving) options.saving_seconds = kSavingSeconds;
   const std::string no_isa = PrepareCost(arguments, options);
   if (arguments.scenes.empty()) options.scenes = BuiltInScenes();
   for (const std::string& scene : arguments.scenes) options.scenes.push_back(FindScene(scene));
@@ -229,6 +233,8 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
                     "add the page of the hard cases: each technique's default form by families (a minute or two, then cached)");
   command->add_flag("--timing", arguments->timing,
                     "time the lighting pass of every variant as a ratio to point, in interleaved rounds");
+  command->add_flag("--saving", arguments->saving,
+                    "time every variant, and count its cycles, against its program with every effect: what the scene does not call for");
   command->add_option("--gpu", arguments->gpus,
                       "AMD families whose cycles are counted without them, or none (default: bonaire,navi21 where the "
                       "compilers are installed)")

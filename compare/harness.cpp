@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "compare/aperture_cache.h"
+#include "compare/explain.h"
 #include "compare/flip.h"
 #include "compare/metrics.h"
 #include "compare/timing.h"
@@ -73,6 +74,21 @@ void Time(const Context& context, Renderer& renderer, const std::vector<Variant>
   auto timing = timings.begin();
   for (VariantResult& result : results) {
     if (result.image) result.time = *timing++;
+  }
+}
+
+// What every variant that has an image saves, on the scene that the renderer drew last.
+void MeasureSavings(const Context& context, Renderer& renderer, const ShaderLibrary& library, const Scene& scene, const CompareOptions& options,
+                    const std::function<void(double)>& progress, std::vector<VariantResult>& results) {
+  ExplainOptions explain;
+  explain.prices = false;
+  explain.meter = options.cost.get();
+  explain.seconds = options.saving_seconds;
+  for (std::size_t v = 0; v < results.size(); ++v) {
+    progress(static_cast<double>(v) / static_cast<double>(results.size()));
+    if (!results[v].image) continue;
+    const Explanation explanation = Explain(context, renderer, library, scene, options.variants[v], explain);
+    results[v].saving = Saving{explanation.pruned_over_all, explanation.rounds, explanation.cycles};
   }
 }
 
@@ -283,6 +299,11 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
       TimingOptions timing = options.timing;
       timing.progress = [&](double fraction) { report("times", 0.7 + 0.2 * fraction); };
       Time(context, renderer, options.variants, *options.timed_against, result.lit_pixels, result.variants, timing);
+    }
+    if (options.saving_seconds > 0.0) {
+      measuring.wait();
+      MeasureSavings(context, renderer, library, scene, options, [&](double fraction) { report("savings", 0.7 + 0.2 * fraction); },
+                     result.variants);
     }
     report("errors", 0.9);
     measuring.wait();  // the scene before: at most one is measured while another is shaded

@@ -30,6 +30,7 @@ struct CompareOptions {
   bool split = false;  // say whose error it is: two more pictures of each variant, in double
   std::optional<Variant> timed_against;                      // `point`, where the passes are to be timed
   TimingOptions timing;
+  double saving_seconds = 0.0;                               // of the clock, per variant, to time it against its program with every effect; 0: not
   std::shared_ptr<const CostMeter> cost;                     // what compiles for GPUs that are not here; may be null
   std::function<void(const std::string&, double)> progress;  // what is being done, fraction of the whole
   // Gets each scene, in their order, once all is known of it, while the next is being shaded; it may take its images away.

@@ -53,6 +53,15 @@ Json TimeJson(const Timing& time) {
   return json;
 }
 
+Json SavingJson(const std::optional<Saving>& saving) {
+  if (!saving) return nullptr;
+  Json json = EstimateJson(saving->time, "interval", "time_ratio", Json::object());
+  json["rounds"] = saving->rounds;
+  json["cycles"] = Json::object();
+  for (const auto& [gpu, cycles] : saving->cycles) json["cycles"][gpu] = {{"pruned", cycles.first}, {"every_effect", cycles.second}};
+  return json;
+}
+
 Json VariantJson(const VariantResult& variant) {
   Json json;
   json["name"] = variant.name;
@@ -72,6 +81,7 @@ Json VariantJson(const VariantResult& variant) {
                      {"approximation", Number(variant.split.approximation)},
                      {"rounding", Number(variant.split.rounding)}}}};
   json["time"] = TimeJson(variant.time);
+  json["saving"] = SavingJson(variant.saving);
   json["isa"] = IsaObject(variant.isa);
   return json;
 }

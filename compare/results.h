@@ -63,6 +63,13 @@ struct ErrorSplit {
   std::vector<Map> maps = {};
 };
 
+// What is saved by simulating only the effects that the scene calls for.
+struct Saving {
+  Estimate time;  // of the lighting pass over that of the program with every effect
+  int rounds = 0;
+  std::map<std::string, std::pair<int, int>> cycles;  // of both, whole pass, by the GPU's name
+};
+
 struct VariantResult {
   std::string name;        // canonical: "ltc+clip=switch"
   std::string short_name;  // "ltc@published"
@@ -76,6 +83,7 @@ struct VariantResult {
   ErrorSplit split;                       // where asked for
   bool within_truth_error = false;        // error below 4 × the truth's own: not ranked
   Timing time;
+  std::optional<Saving> saving;           // where asked for
   std::map<std::string, GpuCost> isa;     // by the GPU's name; empty where not compiled
   std::shared_ptr<const RadianceImage> image;  // null where not supported
 };

@@ -1287,6 +1287,51 @@ function buildFit() {
   return section;
 }
 
+// What simulating only the effects that scenes call for saves: the pruned program over the one with every effect.
+function savingOf(v, key) {
+  if (!v || !v.saving) return null;
+  if (key === "time") return v.saving.time_ratio;
+  const cycles = v.saving.cycles[key];
+  return cycles ? cycles.pruned / cycles.every_effect : null;
+}
+function savingHint(v, key) {
+  if (key === "time") return v.saving.interval ? `95 % interval ${v.saving.interval.map((x) => x.toFixed(2)).join(" to ")}, ${v.saving.rounds} rounds` : "";
+  const cycles = v.saving.cycles[key];
+  return cycles ? `${cycles.pruned} of ${cycles.every_effect} cycles` : "";
+}
+function buildSavings() {
+  const scenes = results.scenes.filter((s) => s.variants.some((v) => v.saving));
+  if (!scenes.length) return null;
+  const names = [...new Map(scenes.flatMap((s) => variantsOf(s).map((v) => [v.name, v.short_name || v.name])))];
+  const measures = segments("Saved in", [["time", "time here"], ...gpusOf(scenes).map((gpu) => [gpu, `cycles on ${gpu}`])], "time", (key) => refresh(key));
+  const matrix = h("div", { class: "matrix vertical", role: "table" });
+  const mean = (key, variants) => {
+    const logs = variants.map((v) => savingOf(v, key)).filter((x) => x > 0).map(Math.log);
+    return h("span", { class: "cell quiet", text: logs.length ? Math.exp(logs.reduce((sum, x) => sum + x, 0) / logs.length).toFixed(2) : "–" });
+  };
+  const refresh = (key) => {
+    press(measures, key);
+    const wide = !matchMedia("(max-width: 720px)").matches;
+    matrix.style.gridTemplateColumns = (wide ? "minmax(7rem, 15rem) " : "") + `repeat(${scenes.length + 1}, minmax(0, 1fr))`;
+    matrix.replaceChildren(h("span", { class: "corner" }), ...scenes.map((s) => h("span", { class: "column", text: s.name })), h("span", { class: "column", text: "mean" }));
+    for (const [name, shown] of names) {
+      const variants = scenes.map((s) => variantNamed(s, name));
+      matrix.append(h("span", { class: "name", text: shown }), ...variants.map((v, i) => {
+        const x = savingOf(v, key);
+        return known(x) ? h("span", { class: "cell" + (x > 0.8 ? " hottest" : x > 0.6 ? " hot" : ""), style: { "--t": clamp(x, 0, 1) }, text: x.toFixed(2), title: `${scenes[i].name}, ${shown}: ${savingHint(v, key)}` })
+          : h("span", { class: "cell none", text: "–" });
+      }), mean(key, variants));
+    }
+    matrix.append(h("span", { class: "rule" }), h("span", { class: "name", text: "mean" }), ...scenes.map((s) => mean(key, s.variants)), mean(key, scenes.flatMap((s) => s.variants)));
+  };
+  const section = h("section", { id: "savings", "aria-labelledby": "savings-heading" },
+    h("div", { class: "head" }, h("h2", { id: "savings-heading", text: "What only the needed effects cost" }), measures,
+      h("p", { class: "note", text: "The lighting pass with the effects that the scene calls for, over the same pass with every effect, which draws the same picture; means are geometric. The paler the cell, the more is saved. `arealab explain SCENE` prices each effect by itself." })),
+    h("div", { class: "card" }, matrix));
+  section.refresh = () => refresh("time");
+  return section;
+}
+
 function buildGlossary() {
   const keys = [["s", "swap A and B"], ["1 2 3", "total, diffuse, specular"], ["m", "signed or magnitude"], ["l", "linear or log"], ["[ ]", "previous, next variant"], [", .", "previous, next scene"], ["+ − 0", "zoom in, out, fit"], ["e E", "exposure up, down"]];
   return h("section", { id: "glossary" }, h("div", { class: "head" }, h("h2", { text: "How to read this page" })),
@@ -1304,9 +1349,9 @@ function buildFooter() {
 
 const resizes = new ResizeObserver(() => { if (scene && shown) { overview.refresh(); if (ui.pairMatrix) ui.pairMatrix(); drawPlots(); draw(); } });
 buildMasthead();
-const fit = buildFit();
-$("#main").append(...[overview, fit, buildGlossary()].filter(Boolean));
-if (fit) fit.refresh();
+const savings = buildSavings(), fit = buildFit();
+$("#main").append(...[overview, savings, fit, buildGlossary()].filter(Boolean));
+for (const section of [savings, fit]) if (section) section.refresh();
 buildFooter();
 show();
 addEventListener("hashchange", show);

@@ -56,6 +56,15 @@ TEST_F(Cli, CompareWritesTheReportAndHoldsLimits) {
   EXPECT_TRUE(ReadJson("out/results.json").at("scenes").at(0).at("truth").at("cached").get<bool>());
 }
 
+TEST_F(Cli, SavingSetsAVariantBesideItsProgramWithEveryEffect) {
+  const Outcome outcome = Arealab("compare gloss --saving --size 32x32 --gpu none --out " + Path("out") + Cache() + " --technique point");
+  ASSERT_EQ(outcome.status, 0) << outcome.out;
+  const nlohmann::json saving = ReadJson("out/results.json").at("scenes").at(0).at("variants").at(0).at("saving");
+  EXPECT_GT(saving.at("time_ratio").get<double>(), 0.0);
+  EXPECT_LE(saving.at("interval").at(0), saving.at("time_ratio"));
+  EXPECT_GE(saving.at("rounds"), 7);
+}
+
 TEST_F(Cli, SameInputGivesTheSameFigures) {
   const std::string compare = "compare spheres --size 40x30 --technique ltc --technique drobot";
   ASSERT_EQ(Arealab(compare + " --cache " + Path("a_cache") + " --out " + Path("a")).status, 0);

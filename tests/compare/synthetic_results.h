@@ -249,6 +249,7 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
     variant.time.net_ratio_to_point = around((8.0 * named.ratio - 5.0) / 3.0);
     variant.time.rounds = 9;
     const int cycles = static_cast<int>(100.0 * named.ratio) + 400;
+    if (variant.name != "reference") variant.saving = Saving{around(0.3 + 0.1 * named.ratio), 11, {{"bonaire", {cycles + 30, 2 * cycles}}}};
     for (const auto& [gpu, share] : {std::pair("bonaire", 1), std::pair("navi21", 2)}) {
       if (variant.name == "reference") continue;
       GpuCost& cost = variant.isa[gpu];
