@@ -358,7 +358,7 @@ TEST(Images, UnroundedExrIsExact) {
   const RadianceImage back = ReadExr(folder / "x.exr");
   EXPECT_EQ(back.diffuse, image.diffuse);
   EXPECT_EQ(back.specular, image.specular);
-  EXPECT_THROW(WriteExr(folder / "missing/x.exr", image), InputError);
+  EXPECT_THROW(WriteExr(folder / "x.exr/y.exr", image), InputError);  // x.exr is no folder
   EXPECT_THROW(ReadExr(folder / "none.exr"), InputError);
 }
 
