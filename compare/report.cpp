@@ -298,7 +298,7 @@ void WriteImages(const Job& job, const fs::path& root) {
   WriteExr(images / (job.stem + ".exr"), half, ExrLoss::kForTheEye);
   const std::span<const glm::vec3> emission =
       scene.emission ? std::span<const glm::vec3>(*scene.emission) : std::span<const glm::vec3>();
-  WriteThumbnail(images / (job.stem + ".png"), Picture(FromHalf(half), emission), scene.width, scene.exposure);
+  WriteThumbnail(images / (job.stem + ".png"), Picture(*job.image, emission), scene.width, scene.exposure);
 }
 
 // The luminance below which a relative difference is taken relative to this instead: 1 % of the truth's mean
