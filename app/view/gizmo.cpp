@@ -181,7 +181,7 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
     grabbed_ = pointer;
     before_ = light;
   }
-  if (handle_ >= 0 && !ImGui::IsMouseDown(0)) handle_ = -1;
+  const bool released = handle_ >= 0 && !ImGui::IsMouseDown(0);  // after its last move, which may come in the same frame
 
   if (handle_ >= 0) {
     const auto held = static_cast<std::size_t>(std::min(handle_, 2));
@@ -216,6 +216,8 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
       }
     }
   }
+
+  if (released) handle_ = -1;
 
   const int shown = handle_ >= 0 ? handle_ : hovered;
   for (int i = 0; i < 3; ++i) {

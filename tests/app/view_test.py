@@ -294,7 +294,8 @@ class ViewTest(unittest.TestCase):
         # A crash loses a few seconds of work at most, and the next start offers the rest.
         window.drag((LIGHT[0] + 70, LIGHT[1]), (LIGHT[0] + 130, LIGHT[1]))
         left = FOLDER / "state" / "arealab"
-        until(lambda: left.is_dir() and any(left.iterdir()), "autosave")
+        x = lambda kept: tomllib.loads(kept.read_text())["light"][0]["position"][0]
+        until(lambda: left.is_dir() and any(x(kept) > 0.2 for kept in left.glob("*.toml")), "autosave of the whole move")
         window.end()
         self.assertEqual(file.read_text(), SCENE)
         window = self.window(file, "--technique", "ltc")
