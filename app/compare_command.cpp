@@ -39,6 +39,7 @@ struct CompareArguments {
 };
 
 constexpr double kSavingSeconds = 2.0;  // a variant and scene
+constexpr int kHardCases = 24000;       // a technique, over all families
 
 struct Limit {
   std::string metric;
@@ -192,7 +193,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
         stress.variants.push_back(DefaultVariant(technique));
         stress.judged.push_back(true);
       }
-      stress.cases = 24000;
+      stress.cases = kHardCases;
       stress.pictures = true;
       stress.progress = [&](const std::string& what, double) { progress.Show("hard cases: " + what, 1.0); };
       results.hard_cases = CachedStressPage(*context, library, stress, "index.html", options.cache);

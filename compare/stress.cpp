@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <functional>
 #include <numeric>
 
 #include "scenes/error.h"
@@ -625,18 +626,17 @@ std::vector<std::string> FamilyResult::Judge() const {
   return found;
 }
 
-std::int64_t VariantStress::cases() const {
-  return std::accumulate(families.begin(), families.end(), std::int64_t{0},
-                         [](std::int64_t sum, const FamilyResult& f) { return sum + f.cases; });
+namespace {
+
+std::int64_t SumOver(const std::vector<FamilyResult>& families, std::int64_t FamilyResult::*count) {
+  return std::transform_reduce(families.begin(), families.end(), std::int64_t{0}, std::plus(), std::mem_fn(count));
 }
-std::int64_t VariantStress::fp16_cases() const {
-  return std::accumulate(families.begin(), families.end(), std::int64_t{0},
-                         [](std::int64_t sum, const FamilyResult& f) { return sum + f.fp16_cases; });
-}
-std::int64_t VariantStress::fp16_nonfinite() const {
-  return std::accumulate(families.begin(), families.end(), std::int64_t{0},
-                         [](std::int64_t sum, const FamilyResult& f) { return sum + f.fp16_nonfinite; });
-}
+
+}  // namespace
+
+std::int64_t VariantStress::cases() const { return SumOver(families, &FamilyResult::cases); }
+std::int64_t VariantStress::fp16_cases() const { return SumOver(families, &FamilyResult::fp16_cases); }
+std::int64_t VariantStress::fp16_nonfinite() const { return SumOver(families, &FamilyResult::fp16_nonfinite); }
 
 int StressResult::failures() const {
   int count = 0;

@@ -134,15 +134,19 @@ PointCase Ordinary(CaseRandom& random, LightShape shape) {
   return c;
 }
 
+// Turns the surface so that its horizon runs through that place of the light, m from the centre.
+void CutAt(PointCase& c, double x, double y, CaseRandom& random) {
+  const double cosine = glm::dot(c.normal, c.to_view);
+  c.normal = random.Perpendicular(c.center + c.axis_x * x + c.axis_y * y - c.position);
+  SetView(c, cosine, random);
+}
+
 // The surface's horizon through the light: along a random direction as seen from a place inside its outline.
 PointCase Crossing(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
   const double spread = shape == LightShape::kSphere ? 0.6 : shape == LightShape::kPolygon ? 0.4 : 0.95;
-  const dvec3 inside = c.center + c.axis_x * (spread * c.half_size.x * random(-1.0, 1.0)) +
-                       c.axis_y * (spread * c.half_size.y * random(-1.0, 1.0)) - c.position;
-  const double cosine = glm::dot(c.normal, c.to_view);
-  c.normal = random.Perpendicular(inside);
-  SetView(c, cosine, random);
+  const double y = spread * c.half_size.y * random(-1.0, 1.0), x = spread * c.half_size.x * random(-1.0, 1.0);
+  CutAt(c, x, y, random);
   return c;
 }
 
@@ -280,10 +284,8 @@ PointCase AlongTube(CaseRandom& random, LightShape shape) {
 // A tube cut by the horizon.
 PointCase CrossingTube(CaseRandom& random, LightShape shape) {
   PointCase c = OrdinaryTube(random, shape);
-  const dvec3 inside = c.center + c.axis_x * (c.half_size.x * random(-1.0, 1.0)) + c.axis_y * (c.half_size.y * random(-1.0, 1.0)) - c.position;
-  const double cosine = glm::dot(c.normal, c.to_view);
-  c.normal = random.Perpendicular(inside);
-  SetView(c, cosine, random);
+  const double y = c.half_size.y * random(-1.0, 1.0), x = c.half_size.x * random(-1.0, 1.0);
+  CutAt(c, x, y, random);
   return c;
 }
 

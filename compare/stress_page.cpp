@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "compare/cache_file.h"
 #include "compare/content_hash.h"
 #include "compare/page_parts.h"
 #include "scenes/replace_file.h"
-#include "scenes/error.h"
 
 namespace arealab {
 namespace {
@@ -293,25 +292,23 @@ HardCasesPage CachedStressPage(Context& context, const ShaderLibrary& library, c
   hash.Program();
   hash.Text(context.renderer() + context.version() + report);
   hash.Value(options.cases);
+  hash.Value(options.seed);
   hash.Value(options.fp16);
   for (const Variant& variant : options.variants) hash.Text(variant.Name());
-  const fs::path file = cache / fmt::format("{}.hard-cases", hash.Name());
+  const std::string name = hash.Name() + ".hard-cases";
   HardCasesPage page;
   page.techniques = static_cast<int>(options.variants.size());
   page.cases = options.cases;
-  std::ifstream in(file, std::ios::binary);
-  if (in >> page.failures && in.get() == '\n') {
-    page.html.assign(std::istreambuf_iterator<char>(in), {});
-    if (page.html.ends_with("</html>\n")) return page;
+  if (const auto entry = ReadCacheEntry(cache, name)) {
+    const std::size_t line = entry->find('\n');
+    page.failures = std::atoi(entry->c_str());
+    page.html = entry->substr(line + 1);
+    return page;
   }
   const StressResult result = Stress(context, library, options);
   page.failures = result.failures();
   page.html = StressPage(result, report);
-  try {
-    ReplaceFile(file, fmt::format("{}\n{}", page.failures, page.html));
-  } catch (const InputError&) {
-    // The page is there all the same.
-  }
+  WriteCacheEntry(cache, name, fmt::format("{}\n{}", page.failures, page.html));
   return page;
 }
 

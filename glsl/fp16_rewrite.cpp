@@ -15,10 +15,6 @@ namespace arealab {
 
 namespace {
 
-bool IsAnyOf(std::string_view word, const auto& list) {
-  return std::find(list.begin(), list.end(), word) != list.end();
-}
-
 // One operation each, or taken for one: rounded once, as no hardware is better.
 constexpr std::array<std::string_view, 20> kRounded{
     "sqrt", "inversesqrt", "exp2", "log2", "sin",  "cos",     "tan",        "asin",       "acos",            "atan",

@@ -15,10 +15,6 @@ constexpr std::array<std::string_view, 16> kFloatOnly{"acos", "asin", "atan", "c
                                                       "exp",  "exp2", "log",  "log2", "pow",  "radians",
                                                       "sin",  "sinh", "tan",  "tanh"};
 
-bool IsOneOf(std::string_view word, const auto& list) {
-  return std::find(list.begin(), list.end(), word) != list.end();
-}
-
 // vec2, mat3, mat4x3: a type whose double form has a d before it.
 bool IsFloatVectorType(std::string_view word) {
   if (word.size() < 4 || (!word.starts_with("vec") && !word.starts_with("mat"))) return false;
@@ -108,7 +104,7 @@ class Rewriter {
     } else if (IsFloatVectorType(word) && !is_member) {
       out_ += 'd';
       out_ += word;
-    } else if (IsOneOf(word, kFloatOnly) && !is_member && IsCall(end)) {
+    } else if (IsAnyOf(word, kFloatOnly) && !is_member && IsCall(end)) {
       out_ += "fp64_";
       out_ += word;
     } else {

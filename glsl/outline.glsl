@@ -70,14 +70,27 @@ Arc OutlineArc(Outline outline, int i) {
   return arc;
 }
 
-// The chords between `count` corners at or above the horizon, m, and their form factor; nothing of fewer than three.
-void ChordOutline(vec3 corners[OUTLINE_CORNERS], int count, vec3 mirror, INOUT(Outline) outline) {
+// Adds what lies at or above the horizon of the side from p, its end q left out, m, local [Sutherland and Hodgman 1974].
+void AddSide(vec3 p, vec3 q, INOUT(Outline) outline) {
+  if (p.z >= 0.0) {
+    outline.corners[outline.corner_count] = p;
+    outline.corner_count = outline.corner_count + 1;
+  }
+  if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
+    vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
+    outline.corners[outline.corner_count] = vec3(cut.x, cut.y, 0.0);
+    outline.corner_count = outline.corner_count + 1;
+  }
+}
+
+// The chords between the corners of the added sides, and their form factor; nothing of fewer than three.
+void CloseChords(vec3 mirror, INOUT(Outline) outline) {
+  int count = outline.corner_count;
   if (count >= 3) {
     for (int i = 0; i < count; ++i) {
-      vec3 p = corners[i];
+      vec3 p = outline.corners[i];
       outline.corners[i] = p * inversesqrt(max(dot(p, p), 1e-30));
     }
-    outline.corner_count = count;
     outline.chord_count = count;
     outline.arc_count = count;
     outline.mirror_inside = true;
@@ -100,8 +113,6 @@ void ChordOutline(vec3 corners[OUTLINE_CORNERS], int count, vec3 mirror, INOUT(O
 // center, half_a, half_b: m, local; the light faces the point. Corners are counter-clockwise seen from outside.
 void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(Outline) outline) {
   // Sutherland and Hodgman at the horizon; a convex quadrilateral keeps at most five corners.
-  vec3 corners[OUTLINE_CORNERS];
-  int count = 0;
   for (int i = 0; i < 4; ++i) {
     float a = i < 2 ? -1.0 : 1.0;
     float b = (i == 1 || i == 2) ? 1.0 : -1.0;
@@ -109,41 +120,23 @@ void RectangleOutline(vec3 center, vec3 half_a, vec3 half_b, vec3 mirror, INOUT(
     float d = (i == 0 || i == 1) ? 1.0 : -1.0;
     vec3 p = center + a * half_a + b * half_b;
     vec3 q = center + c * half_a + d * half_b;
-    if (p.z >= 0.0) {
-      corners[count] = p;
-      count = count + 1;
-    }
-    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
-      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
-      corners[count] = vec3(cut.x, cut.y, 0.0);
-      count = count + 1;
-    }
+    AddSide(p, q, outline);
   }
-  ChordOutline(corners, count, mirror, outline);
+  CloseChords(mirror, outline);
 }
 
 #if EFFECT_POLYGON
 // The same of a polygon: center, x_axis and y_axis are local.
 void PolygonOutline(Light light, vec3 center, vec3 x_axis, vec3 y_axis, vec3 mirror, INOUT(Outline) outline) {
-  vec3 corners[OUTLINE_CORNERS];
-  int count = 0;
   vec2 first = LightCorner(light, 0);
   vec3 p = center + x_axis * first.x + y_axis * first.y;
   for (int i = light.corner_count - 1; i >= 0; --i) {  // clockwise seen from the lit side
     vec2 corner = LightCorner(light, i);
     vec3 q = center + x_axis * corner.x + y_axis * corner.y;
-    if (p.z >= 0.0) {
-      corners[count] = p;
-      count = count + 1;
-    }
-    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
-      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
-      corners[count] = vec3(cut.x, cut.y, 0.0);
-      count = count + 1;
-    }
+    AddSide(p, q, outline);
     p = q;
   }
-  ChordOutline(corners, count, mirror, outline);
+  CloseChords(mirror, outline);
 }
 #endif
 
@@ -286,8 +279,6 @@ void ConeOutline(Cone cone, vec3 mirror, INOUT(Outline) outline) {
 #if EFFECT_TUBE
 // What the point sees of a tube, its rims as chains of 8 chords.
 void TubeOutline(TubeChain chain, vec3 mirror, INOUT(Outline) outline) {
-  vec3 corners[OUTLINE_CORNERS];
-  int count = 0;
   float growth = ChainGrowth(chain.widest, 8.0);
   vec3 p = ChainCorner(chain, vec2(cos(chain.widest), -sin(chain.widest)), -1.0);
   for (int i = 0; i < 18; ++i) {
@@ -295,17 +286,9 @@ void TubeOutline(TubeChain chain, vec3 mirror, INOUT(Outline) outline) {
     float angle = chain.widest * (0.25 * float(step) - 1.0);
     float grown = step == 0 || step == 8 ? 1.0 : growth;
     vec3 q = ChainCorner(chain, vec2(grown * cos(angle), grown * sin(angle)), i < 9 ? 1.0 : -1.0);
-    if (p.z >= 0.0) {
-      corners[count] = p;
-      count = count + 1;
-    }
-    if ((p.z > 0.0 && q.z < 0.0) || (p.z < 0.0 && q.z > 0.0)) {
-      vec3 cut = p + (q - p) * (p.z / (p.z - q.z));
-      corners[count] = vec3(cut.x, cut.y, 0.0);
-      count = count + 1;
-    }
+    AddSide(p, q, outline);
     p = q;
   }
-  ChordOutline(corners, count, mirror, outline);
+  CloseChords(mirror, outline);
 }
 #endif

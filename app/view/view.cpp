@@ -28,6 +28,7 @@
 #include "compare/image_files.h"
 #include "glsl/variant.h"
 #include "scenes/error.h"
+#include "scenes/replace_file.h"
 
 namespace arealab {
 namespace {
@@ -83,9 +84,11 @@ struct Remembered {
   void Save() const {
     const fs::path folder = ConfigFolder();
     if (folder.empty()) return;
-    std::ofstream(folder / "view.conf.tmp") << fmt::format("size {} {}\nnavigation {}\n", size.x, size.y, navigation);
-    std::error_code error;
-    fs::rename(folder / "view.conf.tmp", folder / "view.conf", error);
+    try {
+      ReplaceFile(folder / "view.conf", fmt::format("size {} {}\nnavigation {}\n", size.x, size.y, navigation));
+    } catch (const InputError&) {
+      // It is forgotten then.
+    }
   }
 };
 

@@ -108,6 +108,19 @@ class TechniquePoints {
     return shader_.Shade(ParseVariant(techniques_, variant_name), cases, {precision, knobs});
   }
 
+  // Of the knob "seed" from 0 on.
+  std::vector<Shaded> MeanOverSeeds(const std::string& variant_name, const std::vector<PointCase>& cases, int seeds) {
+    std::vector<Shaded> mean(cases.size());
+    for (int seed = 0; seed < seeds; ++seed) {
+      const std::vector<Shaded> shaded = Shade(variant_name, cases, Precision::kFloat, {{"seed", seed}});
+      for (std::size_t i = 0; i < cases.size(); ++i) {
+        mean[i].diffuse += shaded[i].diffuse / seeds;
+        mean[i].specular += shaded[i].specular / seeds;
+      }
+    }
+    return mean;
+  }
+
  private:
   std::unique_ptr<Context> context_ = CreateContext(ContextKind::kOsmesa);
   ShaderLibrary library_;

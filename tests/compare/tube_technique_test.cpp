@@ -144,15 +144,7 @@ TEST_F(TubeTechnique, TheReferenceIsTheTruth) {
 
 TEST_F(TubeTechnique, MonteCarloTendsToTheTruth) {
   const std::vector<PointCase> cases = RandomPoints(63, kTube, 200);
-  std::vector<Shaded> mean(cases.size());
-  constexpr int kSeeds = 200;
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    const std::vector<Shaded> shaded = points_->Shade("monte_carlo+samples=64", cases, Precision::kFloat, {{"seed", seed}});
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      mean[i].diffuse += shaded[i].diffuse / kSeeds;
-      mean[i].specular += shaded[i].specular / kSeeds;
-    }
-  }
+  const std::vector<Shaded> mean = points_->MeanOverSeeds("monte_carlo+samples=64", cases, 200);
   const std::vector<Shaded> truth = TruthOf(cases);
   EXPECT_LT(RelativeRmse(mean, truth, &Shaded::diffuse), 0.01);
   EXPECT_LT(RelativeRmse(mean, truth, &Shaded::specular), 0.02);
