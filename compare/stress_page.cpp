@@ -192,12 +192,12 @@ constexpr const char* kStressStyle = R"(
 body { margin: 2rem auto; width: min(100% - 2rem, 92rem); font: 15px/1.55 system-ui, "Segoe UI", Roboto, "Noto Sans", Arial, sans-serif; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 h1 { font-size: 1.9rem; letter-spacing: -.02em; margin: 0 0 .5rem; } h2 { margin: 2.2rem 0 .6rem; font-size: 1.25rem; }
 a { color: var(--accent); } .note { opacity: .8; max-width: 92ch; margin: .3rem 0; } .failure { color: var(--warn); margin: .2rem 0; }
-.scroll { overflow-x: auto; } table { border-collapse: separate; border-spacing: 2px; font-size: .78rem; }
+.scroll { overflow-x: auto; } table { border-collapse: separate; border-spacing: 1px; font-size: .7rem; } table.figures { font-size: .78rem; }
 th { font-weight: 500; text-align: left; white-space: nowrap; padding-right: .6rem; } th i { opacity: .6; font-size: .9em; }
 th.column { vertical-align: bottom; padding: 0; height: 7rem; } th.column span { writing-mode: vertical-rl; transform: rotate(180deg); }
-td { padding: 0; min-width: 2.9rem; text-align: center; } td.none { opacity: .4; }
+td { padding: 0; min-width: 2.35rem; text-align: center; } td.none { opacity: .4; }
 .figures td, .figures th { padding: .2rem .8rem .2rem 0; text-align: left; }
-td a { display: block; padding: .22rem .15rem; border-radius: 4px; text-decoration: none; white-space: nowrap; }
+td a { display: block; padding: .22rem .05rem; border-radius: 4px; text-decoration: none; white-space: nowrap; }
 td a:hover { outline: 2px solid var(--accent); }
 details { border-top: 1px solid var(--line); padding: .35rem 0; } summary { cursor: pointer; } details:target { outline: 2px solid var(--accent); outline-offset: 4px; border-radius: 4px; }
 pre { padding: .6rem .8rem; background: #8882; border-radius: 4px; white-space: pre-wrap; font-size: .82rem; }
@@ -206,7 +206,7 @@ figure { margin: 0; } figcaption { font-size: .8rem; opacity: .8; }
 .curves { display: grid; grid-template-columns: repeat(auto-fill, minmax(17rem, 1fr)); gap: 1rem; margin-top: .6rem; }
 svg { width: 100%; background: #8881; border-radius: 4px; } .axis { stroke: #8886; } polyline { fill: none; vector-effect: non-scaling-stroke; }
 .value { stroke: #8889; } .error { stroke: var(--warn); stroke-width: 1.5; }
-.ramp { display: inline-block; width: 14rem; height: .8rem; margin: 0 .5rem; vertical-align: middle; border-radius: 3px; }
+.unbroken { white-space: nowrap; } .ramp { display: inline-block; width: 14rem; height: .8rem; margin: 0 .5rem; vertical-align: middle; border-radius: 3px; }
 )";
 
 // Opens the cell that was asked for.
@@ -254,7 +254,7 @@ std::string StressPage(const StressResult& result, const std::string& report) {
       "<p>{} cases of each technique, seed {}, {}. {}</p>\n"
       "<p class=\"note\">Colour and figure: the worst rounding error, |float − the same text in double| over "
       "the larger of the value "
-      "and what the light gives at most. 1e-7 {} 1. Magenta: not finite. ✕: a bound is exceeded; forms that "
+      "and what the light gives at most. <span class=\"unbroken\">1e-7 {} 1.</span> Magenta: not finite. ✕: a bound is exceeded; forms that "
       "are only shown are their "
       "authors', and may. *: an input's last bit moves the answer, and "
       "what is judged is how many of the inputs' ulps explain the error. A cell opens its worst case.</p>\n",

@@ -355,7 +355,7 @@ function buildOverview() {
   const holderOf = (name) => scenes.map((s) => variantNamed(s, name)).find(Boolean);
   const present = bySource(names.map(holderOf)).map(([s]) => s);
   const source = h("select", { "aria-label": "Source", onchange: (e) => set({ source: e.target.value }) }, h("option", { value: "", text: "all sources" }), present.map((s) => h("option", { value: s, text: s })));
-  const matrix = h("div", { class: "matrix" + (scenes.length > 14 ? " vertical" : ""), role: "table" });
+  const matrix = h("div", { class: "matrix" + (scenes.length > 14 ? " vertical many" : ""), role: "table" });
   section.append(h("div", { class: "head" }, h("h2", { id: "overview-heading", text: "Error at a glance" }), lobes, source,
     h("p", { class: "note", text: "Relative RMSE against ground truth, in percent; the deeper the colour, the larger the error, by decades from 0.01 to 100 %. Choose a cell to see where the error is." })),
     h("div", { class: "card" }, matrix));
@@ -638,7 +638,7 @@ function buildSplit(s) {
   const bar = h("span", { class: "split-bar", style: { background: `linear-gradient(90deg, ${Array.from({ length: 17 }, (_, i) => css(magnitudeColor(i / 16))).join(", ")})` } });
   return h("section", { id: "split", "aria-labelledby": "split-heading" },
     h("div", { class: "head" }, h("h3", { id: "split-heading", text: "Whose error it is" }),
-      h("p", { class: "note" }, "The mathematics', its shortcuts', rounding's: relative to the reference, the largest of each few pixels. 1e-7 ", bar, " 1")),
+      h("p", { class: "note" }, "The mathematics', its shortcuts', rounding's: relative to the reference, the largest of each few pixels. ", h("span", { class: "unbroken" }, "1e-7 ", bar, " 1"))),
     h("div", { class: "split card" }, split.map((v) => h("div", {}, h("b", { text: v.short_name || v.name }),
       SPLIT.map((part) => h("figure", {}, h("img", { src: `images/${encodeURIComponent(s.folder)}/${encodeURIComponent(v.stem)}-${part}.png`, loading: "lazy", alt: `${part} error of ${v.short_name || v.name}` }),
         h("figcaption", { text: `${part}: ${Number((100 * v.error.split[part]).toPrecision(2))} % (${said[part]})` })))))));
@@ -1304,7 +1304,7 @@ function buildSavings() {
   if (!scenes.length) return null;
   const names = [...new Map(scenes.flatMap((s) => variantsOf(s).map((v) => [v.name, v.short_name || v.name])))];
   const measures = segments("Saved in", [["time", "time here"], ...gpusOf(scenes).map((gpu) => [gpu, `cycles on ${gpu}`])], "time", (key) => refresh(key));
-  const matrix = h("div", { class: "matrix vertical", role: "table" });
+  const matrix = h("div", { class: "matrix vertical" + (scenes.length > 14 ? " many" : ""), role: "table" });
   const mean = (key, variants) => {
     const logs = variants.map((v) => savingOf(v, key)).filter((x) => x > 0).map(Math.log);
     return h("span", { class: "cell quiet", text: logs.length ? Math.exp(logs.reduce((sum, x) => sum + x, 0) / logs.length).toFixed(2) : "–" });
@@ -1326,7 +1326,7 @@ function buildSavings() {
   };
   const section = h("section", { id: "savings", "aria-labelledby": "savings-heading" },
     h("div", { class: "head" }, h("h2", { id: "savings-heading", text: "What only the needed effects cost" }), measures,
-      h("p", { class: "note", text: "The lighting pass with the effects that the scene calls for, over the same pass with every effect, which draws the same picture; means are geometric. The paler the cell, the more is saved. `arealab explain SCENE` prices each effect by itself." })),
+      h("p", { class: "note", text: "The lighting pass with the effects that the scene calls for, over the same pass with every effect, which draws the same picture; means are geometric. The paler the cell, the more is saved. The command arealab explain prices each effect of a scene by itself." })),
     h("div", { class: "card" }, matrix));
   section.refresh = () => refresh("time");
   return section;
