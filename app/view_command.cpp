@@ -16,7 +16,7 @@ void AddView(CLI::App& app, int& /*status*/) {
   CLI::App* command = app.add_subcommand("view", "Open a scene in a window: edit it live, compare variants side by side");
   ViewOptions& view = arguments->view;
   command->add_option("scene", view.scene, "a built-in name, a scene file, or a mesh (.gltf, .glb, .obj, .ply, .stl, .3ds)")->required();
-  command->add_option("--technique", view.techniques, "a variant for pane A, then B, C, D (default: ltc, reference)")
+  command->add_option("--technique", view.techniques, "a variant, or truth, for pane A, then B, C, D (default: ltc, truth)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--layout", view.layout, "how panes are compared (default: by the number of techniques)")

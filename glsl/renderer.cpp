@@ -268,7 +268,7 @@ RadianceImage Renderer::Shade(const Variant& variant, Precision precision,
 }
 
 void Renderer::ShadeRows(const Variant& variant, const std::map<std::string, double>& knobs, int first, int count,
-                         RadianceImage& image) {
+                         RadianceImage& image, Precision precision) {
   if (image.width != impl_->size.x || image.height != impl_->size.y) {
     const auto pixels = static_cast<std::size_t>(impl_->size.x) * static_cast<std::size_t>(impl_->size.y);
     image = {impl_->size.x, impl_->size.y, std::vector<glm::vec3>(pixels, glm::vec3(0.0f)),
@@ -276,7 +276,7 @@ void Renderer::ShadeRows(const Variant& variant, const std::map<std::string, dou
   }
   if (impl_->light_count == 0) return;
   const ShadingWatch watch = impl_->Watch(variant);
-  const Impl::Pass& pass = impl_->KeptPass(variant, Precision::kFloat);
+  const Impl::Pass& pass = impl_->KeptPass(variant, precision);
   impl_->SetKnobs(pass, variant, knobs);
   impl_->DrawPass(pass, first, count);
   impl_->ReadBack(impl_->diffuse, first, count, image.diffuse);

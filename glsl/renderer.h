@@ -41,7 +41,7 @@ class Renderer {
   // black and as large as the scene's picture where it is not. Like Draw it looks at a variant's files once after
   // DrawScene.
   void ShadeRows(const Variant& variant, const std::map<std::string, double>& knobs, int first, int count,
-                 RadianceImage& image);
+                 RadianceImage& image, Precision precision = Precision::kFloat);
 
   // Draws the pass for `variant` once more without reading it back, for a clock; ends with glFinish. After a
   // Shade of the same variant since DrawScene it uses that program without looking at the files again, so

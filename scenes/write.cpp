@@ -297,7 +297,21 @@ void WriteMaterial(TableText& table, const Material& before, const Material& aft
   const glm::vec2& r = after.roughness;
   if (before.roughness != r) table.Set("roughness", r.x == r.y ? Float(r.x) : fmt::format("[{}, {}]", Float(r.x), Float(r.y)));
   if (before.metalness != after.metalness) table.Set("metalness", Float(after.metalness));
+  if (before.specular != after.specular) table.Set("specular", Float(after.specular));
   if (before.normal_scale != after.normal_scale) table.Set("normal_scale", Float(after.normal_scale));
+}
+
+void WriteSky(TableText& table, const glm::dvec3& before, const glm::dvec3& after, Units units) {
+  if (before == after) return;
+  const std::string density = units == Units::kPhotometric ? "luminance" : "radiance";
+  if (table.Find(density)->is_array()) return table.Set(density, Numbers(after));
+  const auto hue = [](const glm::dvec3& sky) { return sky / std::max({sky.x, sky.y, sky.z}); };
+  table.Set(density, Number(Luminance(after)));
+  if (!CloseColor(hue(before), hue(after))) table.Set("color", Numbers(hue(after)));
+}
+
+std::string NewSky(const glm::dvec3& sky, Units units) {
+  return fmt::format("\n[sky]\n{} = {}\n", units == Units::kPhotometric ? "luminance" : "radiance", Numbers(sky));
 }
 
 void WriteCamera(TableText& table, const Camera& before, const Camera& after) {
@@ -336,7 +350,7 @@ bool SameLight(const Light& a, const Light& b) {
 }
 
 bool SameMaterial(const Material& a, const Material& b) {
-  return a.name == b.name && a.base_color == b.base_color && a.roughness == b.roughness && a.metalness == b.metalness &&
+  return a.name == b.name && a.base_color == b.base_color && a.roughness == b.roughness && a.metalness == b.metalness && a.specular == b.specular &&
          a.normal_scale == b.normal_scale;
 }
 
@@ -352,7 +366,7 @@ std::optional<std::string> Lost(const Scene& read, const Scene& after) {
     if (found == nullptr || !SameMaterial(*found, material)) return fmt::format("the material '{}'", material.name);
   }
   if (!Close(read.exposure, after.exposure)) return "the exposure";
-  if (read.sky != after.sky) return "the sky";
+  if (read.sky.has_value() != after.sky.has_value() || (read.sky && glm::distance(*read.sky, *after.sky) > 10.0 * kDigits * glm::length(*after.sky))) return "the sky";
   return std::nullopt;
 }
 
@@ -381,6 +395,12 @@ std::string EditedText(const std::string& original, const Scene& before, const S
   std::string added;
   for (const Light& light : after.lights) {
     if (Named(before.lights, light.name) == nullptr) added += NewLight(light, after.units);
+  }
+  if (const toml::table* sky = root["sky"].as_table()) {
+    TableText table(text, *sky);
+    after.sky ? WriteSky(table, *before.sky, *after.sky, after.units) : table.Erase();
+  } else if (after.sky) {
+    added += NewSky(*after.sky, after.units);
   }
   if (!added.empty()) text.Replace(original.size() + (original.ends_with('\n') || original.empty() ? 0 : 1),
                                    original.size() + (original.ends_with('\n') || original.empty() ? 0 : 1), added);

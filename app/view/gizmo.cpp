@@ -12,11 +12,11 @@
 #include <string>
 
 #include "app/view/camera.h"
+#include "app/view/outline.h"
 
 namespace arealab {
 namespace {
 
-constexpr int kRingPoints = 64;
 constexpr int kCenter = 3;  // the handle in the middle; 0 … 2 are the axes
 constexpr double kReach = 5.5;    // handles' length and rings' radius, in heights of the type
 constexpr double kSnapMetres = 0.1;
@@ -59,49 +59,6 @@ bool Exists(const Light& light, GizmoMode mode, int handle) {
   return true;
 }
 
-std::vector<glm::dvec3> Circle(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v) {
-  std::vector<glm::dvec3> points;
-  for (int i = 0; i <= kRingPoints; ++i) {
-    const double angle = 2.0 * glm::pi<double>() * i / kRingPoints;
-    points.push_back(center + std::cos(angle) * u + std::sin(angle) * v);
-  }
-  return points;
-}
-
-std::vector<glm::dvec3> Outline(const Light& light, const Projection& view) {
-  const glm::dvec3 x = light.half_size.x * light.axis_x, y = light.half_size.y * light.axis_y;
-  switch (light.shape) {
-    case LightShape::kRectangle: {
-      const glm::dvec3 c = light.center;
-      return {c - x - y, c + x - y, c + x + y, c - x + y, c - x - y};
-    }
-    case LightShape::kTube: {  // its rims, joined along one line
-      std::vector<glm::dvec3> points = Circle(light.center - x, y, light.half_size.y * light.normal);
-      const std::vector<glm::dvec3> other = Circle(light.center + x, y, light.half_size.y * light.normal);
-      points.insert(points.end(), other.begin(), other.end());
-      return points;
-    }
-    case LightShape::kPolygon: {
-      std::vector<glm::dvec3> points;
-      for (const glm::dvec2& corner : light.corners) points.push_back(light.center + corner.x * light.axis_x + corner.y * light.axis_y);
-      points.push_back(points.front());
-      return points;
-    }
-    case LightShape::kDisk:
-    case LightShape::kEllipse:
-      return Circle(light.center, x, y);
-    case LightShape::kSphere: {  // where lines of sight touch it
-      const glm::dvec3 to = light.center - view.position;
-      const double ratio = light.half_size.x / glm::length(to);
-      if (ratio >= 1.0) return {};
-      const glm::dvec3 u = glm::normalize(glm::cross(to, view.up)), v = glm::normalize(glm::cross(to, u));
-      const double radius = light.half_size.x * std::sqrt(1.0 - ratio * ratio);
-      return Circle(light.center - ratio * ratio * to, radius * u, radius * v);
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2 pointer, bool pointer_free) {
@@ -127,7 +84,7 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
   for (std::size_t i = 0; i < session.scene.lights.size(); ++i) {
     const Light& light = session.scene.lights[i];
     const bool selected = static_cast<int>(i) == session.light;
-    if (selected) polyline(Outline(light, view), kAccent, 1.5f * line);
+    if (selected) polyline(Outline(light, view.position), kAccent, 1.5f * line);
     const auto at = pixel(light.center);
     if (!at || selected) continue;
     const double radius = 5.0 * line;

@@ -9,6 +9,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "app/view/widgets.h"
+#include "compare/cost.h"
 #include "glsl/effects.h"
 #include "glsl/variant.h"
 
@@ -19,6 +20,9 @@ using namespace widgets;
 
 const char* const kPaneLetters[] = {"A", "B", "C", "D"};
 const char* const kTransforms[] = {"sRGB", "ACES", "Neutral", "AgX", "False colour"};
+
+constexpr const char* kTruthIs = "The light's own integrals in double, refined while nothing moves; until then the technique `reference` stands in. It says how far it "
+                                 "is, and its own error at 99.9 % of the pixels. With shadows where the scene has apertures.";
 
 std::string Radiance(glm::dvec3 v) { return fmt::format("{:.4g}  {:.4g}  {:.4g}", v.x, v.y, v.z); }
 
@@ -47,6 +51,8 @@ void VariantCombo(PanelContext& context, int pane, float width) {
       if (ImGui::Selectable(context.session.snapshots[i].label.c_str(), name == shown.name)) shown = {name, {}};
       Tip("A picture kept earlier (K).");
     }
+    if (ImGui::Selectable(kTruth, shown.name == kTruth)) shown = {kTruth, {}};
+    Tip(kTruthIs);
     if (context.state.techniques) {
       for (const Variant& variant : DefaultVariants(*context.state.techniques)) {
         const std::string name = variant.ShortName();
@@ -70,6 +76,51 @@ std::string Shortened(std::string text, float width) {
   return text + "…";
 }
 
+std::string CanonicalName(const std::vector<Technique>& techniques, const std::string& shown) {
+  try {
+    return ParseVariant(techniques, shown).Name();
+  } catch (const std::exception&) {
+    return shown;  // its file has changed
+  }
+}
+
+// Time for this view, cycles, and how the time went as the view changed.
+void VariantCost(const PanelContext& context, int pane) {
+  const std::string& shown = context.session.panes[static_cast<std::size_t>(pane)].name;
+  if (TechniqueOf(context.state, shown) == nullptr) return;
+  const std::string name = CanonicalName(*context.state.techniques, shown);
+  ImGui::PushID(pane);
+  ImGui::Dummy({1.0f, 0.2f * context.unit});
+  Dim(fmt::format("{}   {}", kPaneLetters[pane], shown));
+  const auto cost = context.state.costs.find(name);
+  if (cost != context.state.costs.end()) {
+    Row("Time", "ms", "");
+    ImGui::Text("%.3g", cost->second.milliseconds);
+    Tip(fmt::format("Of the lighting pass for this view: {:.3g} ns a lit pixel, {:.3g} less a pass that only reads and writes.",
+                    cost->second.ns_per_pixel, cost->second.net_ns_per_pixel));
+    ImGui::SameLine();
+    Dim(fmt::format("{:.2f} × point", cost->second.ratio_to_point));
+    Tip("Against the technique `point`, in turns on one clock.");
+  }
+  const auto cycles = context.cycles.variants.find(shown);
+  if (cycles != context.cycles.variants.end()) {
+    Row("Cycles", "", "");
+    ImGui::Text("%d", cycles->second);
+    Tip(fmt::format("On {}, per wave of 64 pixels of the lighting pass with this scene's effects: estimated by its compiler, not measured.", context.cycles.gpu));
+    ImGui::SameLine();
+    Dim(context.cycles.gpu);
+  }
+  const auto history = context.history.find(name);
+  if (history != context.history.end() && history->second.size() > 1) {
+    const std::vector<float>& values = history->second;
+    const float most = 1.1f * *std::ranges::max_element(values);
+    Row("History", "ns/px", "");
+    ImGui::PlotLines("##history", values.data(), static_cast<int>(values.size()), 0, nullptr, 0.0f, most, {0.0f, 2.4f * context.unit});
+    Tip(fmt::format("The last {} measurements, the newest at the right, from 0 to {:.3g} ns a lit pixel.", values.size(), most));
+  }
+  ImGui::PopID();
+}
+
 // The options as menus, the knobs as sliders: what the technique's header declares.
 void VariantControls(PanelContext& context, int pane) {
   ShownVariant& shown = context.session.panes[static_cast<std::size_t>(pane)];
@@ -80,6 +131,7 @@ void VariantControls(PanelContext& context, int pane) {
     return;
   }
   Heading(fmt::format("{}   {}", kPaneLetters[pane], shown.name));
+  if (shown.name == kTruth) return Note(kTruthIs);
   if (technique == nullptr) {
     Note("Not in the registry: its file has gone or its header is wrong.");
     return;
@@ -120,13 +172,6 @@ void VariantControls(PanelContext& context, int pane) {
                     knob.unit, knob.initial));
   }
   if (technique->options.empty() && technique->knobs.empty()) Note("Neither options nor knobs.");
-  const auto cost = context.state.costs.find(variant.Name());
-  if (cost != context.state.costs.end()) {
-    Row("Cost", "ns/px", "");
-    ImGui::Text("%.1f", cost->second.ns_per_pixel);
-    ImGui::SameLine();
-    Dim(fmt::format("{:.2f} × point", cost->second.ratio_to_point));
-  }
   ImGui::PopID();
 }
 
@@ -272,6 +317,32 @@ void LightControls(Session& session) {
   }
 }
 
+// What fills the scene from every direction.
+void SkyControls(Session& session) {
+  Scene& scene = session.scene;
+  Heading("Sky");
+  bool on = scene.sky.has_value();
+  Row("Fill", "", "");
+  if (ImGui::Checkbox("##sky", &on)) {
+    double brightest = 0.0;  // a hundredth of the brightest light to begin with
+    for (const Light& light : scene.lights) brightest = std::max(brightest, Luminance(light.radiance));
+    scene.sky = on ? std::optional(glm::dvec3(0.01 * brightest)) : std::nullopt;
+  }
+  Tip("Light of one radiance from every direction. Drop an image of a whole sky (latitude and longitude) on the background: its mean.");
+  if (!scene.sky) return;
+  const double luminance = std::max(Luminance(*scene.sky), 1e-12);
+  double radiance = luminance;
+  Row(scene.units == Units::kPhotometric ? "Luminance" : "Radiance", RadianceUnit(scene), "");
+  if (Scalar("##sky_radiance", radiance, static_cast<float>(0.01 * luminance), 1e-9, 1e12)) *scene.sky *= radiance / luminance;
+  Tip(fmt::format("{}, the same from every direction.", RadianceUnit(scene)));
+  glm::vec3 hue(*scene.sky / std::max({scene.sky->x, scene.sky->y, scene.sky->z}));
+  Row("Colour", "linear", "");
+  if (ImGui::ColorEdit3("##sky_color", &hue.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs) && Luminance(hue) > 1e-6) {
+    scene.sky = glm::dvec3(hue) * (luminance / Luminance(hue));
+  }
+  Tip("Hue, linear sRGB; the luminance stays.");
+}
+
 void LightsTab(PanelContext& context) {
   Session& session = context.session;
   auto& lights = session.scene.lights;
@@ -292,7 +363,7 @@ void LightsTab(PanelContext& context) {
   Tip("The selected light; a scene keeps at least one.");
   if (session.light < 0) {
     Note("Click a light, in the list or in the picture, to edit it.");
-    return;
+    return SkyControls(session);
   }
   const char* const modes[] = {"Move", "Turn", "Scale"};
   int mode = static_cast<int>(session.gizmo);
@@ -301,6 +372,7 @@ void LightsTab(PanelContext& context) {
   session.gizmo = static_cast<GizmoMode>(mode);
   ImGui::Spacing();
   LightControls(session);
+  SkyControls(session);
 }
 
 void MaterialsTab(PanelContext& context) {
@@ -335,8 +407,15 @@ void MaterialsTab(PanelContext& context) {
     Tip("Roughness at the other end of the texture coordinate u.");
   }
   Row("Metalness", "0 … 1", "");
-  ImGui::SliderFloat("##metalness", &material.metalness, 0.0f, 1.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+  if (ImGui::SliderFloat("##metalness", &material.metalness, 0.0f, 1.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp) && material.metalness > 0.0f) {
+    material.specular = 1.0f;  // a metal has the whole lobe
+  }
   Tip("0 a dielectric with 4 % reflectance at normal incidence, 1 a metal of the base colour.");
+  if (material.metalness == 0.0f && !material.metallic_roughness_texture) {
+    Row("Specular", "0 … 1", "");
+    ImGui::SliderFloat("##specular", &material.specular, 0.0f, 1.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    Tip("Weight of a non-metal's specular lobe; 0 is matte.");
+  }
   if (material.normal_texture) {
     Row("Normal map", "×", "");
     ImGui::SliderFloat("##normal_scale", &material.normal_scale, 0.0f, 4.0f, "%.4g", ImGuiSliderFlags_AlwaysClamp);
@@ -353,60 +432,109 @@ void MaterialsTab(PanelContext& context) {
 
 // ------------------------------------------------------------------------------------------------ pixel, view
 
-void PixelTab(PanelContext& context) {
-  const Session& session = context.session;
+// A line of two columns that is no control.
+void Fact(const char* label, const char* unit, const std::string& value, const std::string& tip) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(label);
+  Tip(tip);
+  if (*unit != '\0') {
+    ImGui::SameLine(0.0f, 0.4f * ImGui::GetFontSize());
+    Dim(unit);
+  }
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(value.c_str());
+}
+
+void PixelLights(const PanelContext& context, PanelRequests& requests) {
+  const std::vector<LightAtPixel>& lights = context.inspection.lights;
+  const std::size_t shown = std::min<std::size_t>(lights.size(), 4);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const LightAtPixel& light = lights[i];
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(Shortened(light.name, 5.5f * context.unit).c_str());
+    Tip(fmt::format("{}: form factor {:.5g}, the share of the cosine-weighted hemisphere that it fills", light.name, light.form_factor));
+    ImGui::SameLine(6.0f * context.unit);
+    Dim(light.clipping);
+    Tip("What of the light lies above the surface's plane.");
+    ImGui::SameLine(ImGui::GetWindowContentRegionWidth() - 2.6f * context.unit);
+    if (ImGui::Button("Copy", {-1.0f, 0.0f})) requests.copy = &light;
+    Tip("Ctrl + C. Copies as test case the line that `arealab stress --case` takes: this point under this light alone, with white albedo (diffuse is the "
+        "picture's over the albedo), F0 and radiance by their luminance, GGX, without texture, apertures and sky.");
+    ImGui::PopID();
+  }
+  if (lights.size() > shown) Note(fmt::format("and {} that fill less of the hemisphere", lights.size() - shown));
+}
+
+void PixelTab(PanelContext& context, PanelRequests& requests) {
+  Session& session = context.session;
   const Inspection& pixel = context.inspection;
   if (!session.inspected) {
-    Note("Shift+click the picture to see what every pane has at a pixel, and the truth there.");
+    Note("Shift+click the picture to see what every technique has at a pixel, the truth there, and the lobe.");
     return;
   }
   if (!pixel.surface) {
-    Note(pixel.what.empty() ? "No surface there." : pixel.what);
+    Note(!pixel.what.empty() ? pixel.what : context.inspecting ? "Looking …" : "No surface there.");
     return;
   }
-  Heading("Point");
-  Row("Pixel", "", "");
-  ImGui::Text("%d, %d", pixel.pixel.x, pixel.pixel.y);
-  Row("Position", "m", "");
-  ImGui::Text("%.4g  %.4g  %.4g", pixel.position.x, pixel.position.y, pixel.position.z);
-  Row("Roughness", "", "");
-  ImGui::Text("%.4g", pixel.roughness);
-  ImGui::SameLine();
-  Dim(fmt::format("alpha {:.4g}", std::max(pixel.roughness * pixel.roughness, 1e-4)));
-  Row("View angle", "°", "");
-  ImGui::Text("%.2f", glm::degrees(std::acos(std::clamp(pixel.n_dot_v, -1.0, 1.0))));
-  Row("Form factor", "", "The share of the cosine-weighted hemisphere that the lights fill, summed");
-  ImGui::Text("%.5g", pixel.form_factor);
-  Row("Horizon", "", "How many of a light's corners (a sphere: its top and bottom) lie above the surface's plane");
-  ImGui::BeginGroup();
-  ImGui::TextUnformatted(pixel.clipping.c_str());
-  ImGui::EndGroup();
-  Heading(fmt::format("{}, luminance   {}", session.lobe == Lobe::kTotal ? "Total" : session.lobe == Lobe::kDiffuse ? "Diffuse" : "Specular",
-                      RadianceUnit(session.scene)));
-  if (ImGui::BeginTable("##values", 3, ImGuiTableFlags_SizingStretchProp)) {
-    ImGui::TableSetupColumn("name", 0, 1.5f);
-    ImGui::TableSetupColumn("value", 0, 1.0f);
-    ImGui::TableSetupColumn("error", 0, 1.0f);
-    const auto row = [&](const std::string& name, const glm::dvec3& value, bool truth) {
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(name.c_str());
-      Tip(name);
-      ImGui::TableNextColumn();
-      ImGui::Text("%.4g", Luminance(value));
-      Tip(fmt::format("Linear sRGB: {}", Radiance(value)));
-      ImGui::TableNextColumn();
-      const double reference = Luminance(pixel.truth);
-      if (truth) {
-        Dim(fmt::format("±{:.1g} %", 100.0 * pixel.truth_error));
-      } else if (reference > 0.0) {
-        ImGui::Text("%+.3g %%", 100.0 * (Luminance(value) - reference) / reference);
-      }
-    };
-    row("truth", pixel.truth, true);
-    for (const auto& [name, value] : pixel.values) row(name, value, false);
+  if (ImGui::BeginTable("##point", 2, ImGuiTableFlags_SizingStretchSame)) {
+    Fact("Pixel", "", fmt::format("{}, {}", pixel.pixel.x, pixel.pixel.y), "From the picture's top left corner.");
+    Fact("Position", "m", fmt::format("{:.4g}  {:.4g}  {:.4g}", pixel.position.x, pixel.position.y, pixel.position.z), "World: x right, y away, z up.");
+    Fact("Roughness", "", fmt::format("{:.4g}   α {:.4g}", pixel.roughness, std::max(pixel.roughness * pixel.roughness, 1e-4)),
+         "The artist's roughness and alpha, its square.");
+    Fact("View angle", "°", fmt::format("{:.2f}", glm::degrees(std::acos(std::clamp(pixel.n_dot_v, -1.0, 1.0)))), "Between the normal and the viewer.");
+    Fact("Form factor", "", fmt::format("{:.5g}", pixel.form_factor), "The share of the cosine-weighted hemisphere that the lights fill, summed.");
     ImGui::EndTable();
   }
+  Heading(pixel.lights.size() == 1 ? "Light" : "Lights");
+  PixelLights(context, requests);
+  Heading(fmt::format("{}, luminance   {}", session.lobe == Lobe::kTotal ? "Total" : session.lobe == Lobe::kDiffuse ? "Diffuse" : "Specular",
+                      RadianceUnit(session.scene)));
+  if (ImGui::BeginTable("##values", 4, ImGuiTableFlags_SizingStretchProp)) {
+    ImGui::TableSetupColumn("name", 0, 1.3f);
+    ImGui::TableSetupColumn("value", 0, 1.0f);
+    ImGui::TableSetupColumn("error", 0, 0.95f);
+    ImGui::TableSetupColumn("rounding", 0, 0.9f);
+    const double reference = Luminance(pixel.truth.Of(session.lobe));
+    const auto cell = [&](const std::string& text, const std::string& tip, bool dim = false) {
+      ImGui::TableNextColumn();
+      dim ? Dim(text) : ImGui::TextUnformatted(text.c_str());
+      Tip(tip);
+    };
+    const auto head = [&](const char* text, const char* tip) { cell(text, tip, true); };
+    ImGui::TableNextRow();
+    head("", "");
+    head("value", "Luminance of the picture there; of the RGB values in its tooltip.");
+    head("error", "(value − truth) / truth.");
+    head("rounding", "|float − double| / double of the same shader text.");
+    const std::string exact = fmt::format("Diffuse {}, specular {}; linear sRGB.", Radiance(pixel.truth.diffuse), Radiance(pixel.truth.specular));
+    ImGui::TableNextRow();
+    cell("truth", "The light's own integrals in double; with shadows where the scene has apertures.");
+    cell(fmt::format("{:.4g}", reference), exact);
+    cell(fmt::format("±{:.1g} %", 100.0 * pixel.truth_error), "What the truth says of its own error, of the total.", true);
+    cell("", "");
+    for (const PixelValue& value : pixel.values) {
+      const auto last = session.panes.begin() + session.PaneCount();
+      const bool shown = std::find_if(session.panes.begin(), last, [&](const ShownVariant& pane) { return pane.name == value.name; }) != last;
+      const double luminance = Luminance(value.in_float.Of(session.lobe));
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      shown ? ImGui::TextUnformatted(value.name.c_str()) : Dim(value.name);
+      Tip(value.name);
+      cell(fmt::format("{:.4g}", luminance),
+           fmt::format("Diffuse {}, specular {}; linear sRGB.", Radiance(value.in_float.diffuse), Radiance(value.in_float.specular)));
+      const double error = reference > 0.0 ? 100.0 * (luminance - reference) / reference : 0.0;
+      cell(!(reference > 0.0) ? "–" : std::abs(error) < 0.01 ? fmt::format("{:+.0e} %", error) : fmt::format("{:+.3g} %", error), "(value − truth) / truth.");
+      const double exactly = value.in_double ? Luminance(value.in_double->Of(session.lobe)) : 0.0;
+      cell(!value.in_double ? "…" : exactly != 0.0 ? fmt::format("{:.1e}", std::abs(luminance - exactly) / std::abs(exactly)) : "–",
+           "|float − double| / double of the same shader text.", true);
+    }
+    ImGui::EndTable();
+  }
+  if (context.inspecting) Note("more to come …");
+  ImGui::Checkbox("Lobe on the picture", &session.show_lobe);
+  Tip("The specular lobe at this point: the BRDF, the fitted LTC, the lights, the horizon.");
 }
 
 void ViewTab(PanelContext& context, PanelRequests& requests) {
@@ -452,16 +580,24 @@ void ViewTab(PanelContext& context, PanelRequests& requests) {
 
   Heading("Effects");
   Note("What the scene calls for. Switch one off to see the picture and the cost without it.");
-  for (const Effect& effect : SceneEffects(session.scene)) {
+  for (const Effect& effect : session.Effects()) {
     const std::string& name = effect.name;
-    const bool shape = name == "rectangle" || name == "disk" || name == "sphere";
+    const bool shape = std::ranges::any_of(kLightShapes, [&](LightShape light) { return name == Name(light); });
     if (!effect.on || shape) continue;
     bool on = !session.effects_off.contains(name);
     if (ImGui::Checkbox(EffectLabel(name).c_str(), &on)) {
       on ? void(session.effects_off.erase(name)) : void(session.effects_off.insert(name));
     }
     Tip(effect.reason + ".");
+    const auto price = context.cycles.effects.find(name);
+    if (price == context.cycles.effects.end()) continue;
+    const std::string text = fmt::format("{:+} cycles", price->second);
+    ImGui::SameLine(ImGui::GetWindowContentRegionWidth() - ImGui::CalcTextSize(text.c_str()).x);
+    ImGui::AlignTextToFramePadding();
+    Dim(text);
+    Tip(fmt::format("What it adds to {} on {}, per wave of 64 pixels of the lighting pass.", session.panes[0].name, context.cycles.gpu));
   }
+  if (!session.measure) Note("Shading, Measure: what each costs.");
 
   Heading("Files");
   if (ImGui::Button("Save scene", {-1.0f, 0.0f})) requests.save = true;
@@ -476,8 +612,28 @@ void ViewTab(PanelContext& context, PanelRequests& requests) {
   Tip("F11: pane A's radiance with its lobes as layers, unexposed.");
 }
 
+void CostControls(PanelContext& context) {
+  Session& session = context.session;
+  ImGui::Checkbox("Measure what it costs", &session.measure);
+  Tip("Times the lighting pass of each pane against `point`, in turns, whenever the picture is whole and nothing moves, without waiting "
+      "for the screen; counts cycles on a GPU of your choice.");
+  if (!session.measure) return;
+  Row("Cycles on", "", "");
+  if (ImGui::BeginCombo("##gpu", session.gpu.c_str(), ImGuiComboFlags_HeightLarge)) {
+    for (const char* gpu : GpuNames()) {
+      if (ImGui::Selectable(gpu, session.gpu == gpu)) session.gpu = gpu;
+    }
+    ImGui::EndCombo();
+  }
+  Tip("An AMD family, by the name that Mesa's compiler has for it; it need not be here. bonaire is like a PlayStation 4's.");
+  for (int i = 0; i < session.PaneCount(); ++i) VariantCost(context, i);
+  if (!context.cycles.trouble.empty()) Note(context.cycles.trouble);
+  if (context.state.software) Note("Times are of a CPU rasteriser, not a GPU.");
+}
+
 void TechniqueTab(PanelContext& context) {
   Session& session = context.session;
+  CostControls(context);
   if (session.layout == Layout::kGrid) {
     Row("Panes", "", "");
     ImGui::SliderInt("##panes", &session.grid_panes, 2, 4);
@@ -488,10 +644,6 @@ void TechniqueTab(PanelContext& context) {
     }
   }
   for (int i = 0; i < session.PaneCount(); ++i) VariantControls(context, i);
-  Heading("Cost");
-  ImGui::Checkbox("Measure", &session.measure);
-  Tip("Times the lighting pass of each pane against `point`, in turns, whenever the picture is whole and nothing moves.");
-  if (session.measure && context.state.software) Note("CPU rasteriser, not a GPU.");
 }
 
 }  // namespace
@@ -583,7 +735,7 @@ void DrawColumn(PanelContext& context, glm::vec2 position, glm::vec2 size, Panel
     tab("Lights", "The scene's lights", [&] { LightsTab(context); });
     tab("Materials", "The scene's materials", [&] { MaterialsTab(context); });
     tab("Shading", "Options, knobs and cost of what is shown", [&] { TechniqueTab(context); });
-    tab("Pixel", "What every pane has at one pixel", [&] { PixelTab(context); });
+    tab("Pixel", "What every technique has at one pixel", [&] { PixelTab(context, requests); });
     tab("View", "Camera, maps, effects, files", [&] { ViewTab(context, requests); });
     ImGui::EndTabBar();
   }
@@ -591,7 +743,7 @@ void DrawColumn(PanelContext& context, glm::vec2 position, glm::vec2 size, Panel
   ImGui::Separator();
   std::string status;
   for (const ShadedVariant& variant : context.state.variants) {
-    if (!variant.image) continue;
+    if (!variant.image || variant.variant.name == kTruth) continue;
     status += fmt::format("{}{} {:.0f} ms", status.empty() ? "" : "   ", variant.variant.name, 1e3 * variant.seconds);
   }
   if (context.progress < 1.0) {
@@ -621,7 +773,9 @@ void DrawOverlay(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
   const auto name = [&](int pane) {
     const ShownVariant& shown = session.panes[static_cast<std::size_t>(pane)];
     const Snapshot* snapshot = session.SnapshotOf(shown);
-    return snapshot != nullptr ? snapshot->label : shown.name;
+    if (snapshot != nullptr) return snapshot->label;
+    const auto shaded = std::ranges::find(context.state.variants, shown.name, [](const ShadedVariant& variant) { return variant.variant.name; });
+    return shaded == context.state.variants.end() || shaded->note.empty() ? shown.name : fmt::format("{}   {}", shown.name, shaded->note);
   };
   switch (session.layout) {
     case Layout::kSingle:
@@ -693,7 +847,7 @@ void DrawHelp(PanelContext& context, glm::vec2 window) {
                       {maya ? "Alt + right drag, wheel" : "Wheel, Ctrl + middle drag", "dolly"},
                       {"F", "look at the point under the pointer"},
                       {"Click", "select a light"},
-                      {"Shift + click", "inspect a pixel"},
+                      {"Shift + click, Ctrl + C", "inspect a pixel, copy it as a test case"},
                       {"G  R  S", "move, turn, scale the light; Ctrl snaps"},
                       {"1 … 5", "single, wipe, difference, flicker, grid"},
                       {"X", "swap A and B"},

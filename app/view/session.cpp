@@ -36,13 +36,13 @@ bool Same(const Light& a, const Light& b) {
 }
 
 bool Same(const Material& a, const Material& b) {
-  return a.name == b.name && a.base_color == b.base_color && a.roughness == b.roughness && a.metalness == b.metalness &&
+  return a.name == b.name && a.base_color == b.base_color && a.roughness == b.roughness && a.metalness == b.metalness && a.specular == b.specular &&
          a.normal_scale == b.normal_scale && a.base_color_texture == b.base_color_texture &&
          a.metallic_roughness_texture == b.metallic_roughness_texture && a.normal_texture == b.normal_texture;
 }
 
 bool Same(const Edits& a, const Edits& b) {
-  return a.exposure == b.exposure && SameAll(a.lights, b.lights) && SameAll(a.materials, b.materials);
+  return a.exposure == b.exposure && a.sky == b.sky && SameAll(a.lights, b.lights) && SameAll(a.materials, b.materials);
 }
 
 bool Same(const Camera& a, const Camera& b) {
@@ -59,10 +59,20 @@ const Snapshot* Session::SnapshotOf(const ShownVariant& pane) const {
   return i >= 1 && i <= snapshots.size() ? &snapshots[i - 1] : nullptr;
 }
 
+const std::vector<Effect>& Session::Effects() {
+  if (!effects_of_ || !Same(std::get<Edits>(*effects_of_), Current()) || !Same(std::get<Camera>(*effects_of_), scene.camera) ||
+      std::get<std::uint64_t>(*effects_of_) != geometry) {
+    effects_ = SceneEffects(scene);
+    effects_of_.emplace(Current(), scene.camera, geometry);
+  }
+  return effects_;
+}
+
 void Session::Set(const Edits& edits) {
   scene.lights = edits.lights;
   scene.materials = edits.materials;
   scene.exposure = edits.exposure;
+  scene.sky = edits.sky;
   light = std::min(light, static_cast<int>(scene.lights.size()) - 1);
 }
 
@@ -91,7 +101,7 @@ void Session::Redo() {
 }
 
 bool Session::Dirty() const {
-  return !Same(Current(), {on_disk_.lights, on_disk_.materials, on_disk_.exposure}) || !Same(file_camera_, on_disk_.camera);
+  return !Same(Current(), {on_disk_.lights, on_disk_.materials, on_disk_.exposure, on_disk_.sky}) || !Same(file_camera_, on_disk_.camera);
 }
 
 Scene Session::Saved() const {
@@ -156,7 +166,7 @@ bool Session::HasLeftBehind() const {
 
 void Session::Restore() {
   const Scene left = ParseScene(scene.file, ReadSceneText(AutosaveFile()));
-  Set({left.lights, left.materials, left.exposure});
+  Set({left.lights, left.materials, left.exposure, left.sky});
   Commit();
 }
 

@@ -8,10 +8,12 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "app/view/display.h"
 #include "app/view/worker.h"
+#include "glsl/effects.h"
 #include "scenes/scene.h"
 
 namespace arealab {
@@ -25,6 +27,7 @@ struct Edits {
   std::vector<Light> lights;
   std::vector<Material> materials;
   double exposure = 0.0;
+  std::optional<glm::dvec3> sky;
 };
 bool Same(const Light& a, const Light& b);
 bool Same(const Material& a, const Material& b);
@@ -64,11 +67,16 @@ class Session {
   GizmoMode gizmo = GizmoMode::kMove;
   std::set<std::string> effects_off;
   bool measure = false;
+  std::string gpu = "bonaire";  // whose cycles are counted while measuring
   int light = -1;     // selected, or -1
   int material = 0;   // selected
   std::optional<glm::dvec2> inspected;  // 0 … 1 across the picture, from its top left
+  bool show_lobe = true;                // of the inspected pixel, on the picture
 
   std::vector<Snapshot> snapshots;
+
+  // Of the scene as it is.
+  const std::vector<Effect>& Effects();
 
   // The snapshot that a pane names, or null where it names a variant.
   const Snapshot* SnapshotOf(const ShownVariant& pane) const;
@@ -99,7 +107,7 @@ class Session {
   void Replace(Scene from_disk, bool keep_camera);
 
  private:
-  Edits Current() const { return {scene.lights, scene.materials, scene.exposure}; }
+  Edits Current() const { return {scene.lights, scene.materials, scene.exposure, scene.sky}; }
   void Set(const Edits& edits);
 
   std::filesystem::path AutosaveFile() const;
@@ -111,6 +119,8 @@ class Session {
   Edits committed_;
   std::vector<Edits> undo_, redo_;
   std::optional<Edits> autosaved_;
+  std::vector<Effect> effects_;  // of the scene that these describe
+  std::optional<std::tuple<Edits, Camera, std::uint64_t>> effects_of_;
 };
 
 // A built-in name, a scene file, or a mesh alone, which gets a floor, a camera that frames it and a softbox. Throws

@@ -21,11 +21,12 @@
 
 #include "app/view/camera.h"
 #include "app/view/gizmo.h"
-#include "app/view/inspect.h"
+#include "app/view/inspector.h"
 #include "app/view/panels.h"
 #include "app/view/watch.h"
 #include "app/view/widgets.h"
 #include "compare/image_files.h"
+#include "compare/stress_families.h"
 #include "glsl/variant.h"
 #include "scenes/error.h"
 #include "scenes/replace_file.h"
@@ -43,6 +44,7 @@ constexpr double kMessageSeconds = 6.0;
 constexpr double kAutosaveSeconds = 3.0;
 constexpr int kTurntableFrames = 72;
 constexpr double kFlickerSeconds = 0.5;
+constexpr std::size_t kHistory = 64;  // measurements that are remembered
 constexpr double kClickReach = 4.0;  // px: a press that moves less is a click
 
 // Since the process began, loading of libraries included.
@@ -153,14 +155,14 @@ struct Figures {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
     return values[index];
   }
-  void Print() const {
+  void Print(const std::string& more) const {
     fmt::print("{{\"first_picture_ms\": {:.0f}, \"first_full_ms\": {:.0f}, "
                "\"input_to_picture_ms\": {{\"median\": {:.1f}, \"p95\": {:.1f}, \"count\": {}}}, "
                "\"rest_to_full_ms\": {{\"median\": {:.1f}, \"max\": {:.1f}, \"count\": {}}}, "
-               "\"frame_ms\": {{\"median\": {:.1f}, \"p95\": {:.1f}, \"count\": {}}}}}\n",
+               "\"frame_ms\": {{\"median\": {:.1f}, \"p95\": {:.1f}, \"count\": {}}}{}}}\n",
                1e3 * first_picture, 1e3 * first_full, 1e3 * Percentile(latency, 0.5), 1e3 * Percentile(latency, 0.95),
                latency.size(), 1e3 * Percentile(full_after, 0.5), 1e3 * Percentile(full_after, 1.0), full_after.size(),
-               1e3 * Percentile(frame, 0.5), 1e3 * Percentile(frame, 0.95), frame.size());
+               1e3 * Percentile(frame, 0.5), 1e3 * Percentile(frame, 0.95), frame.size(), more);
   }
 };
 
@@ -202,7 +204,7 @@ class View {
       Poll();
       if (redraw_ > 0) Frame();
     }
-    if (options_.json) figures_.Print();
+    if (options_.json) figures_.Print(session_.inspected && inspection_.surface ? ", " + Json(inspection_) : "");
   }
 
  private:
@@ -233,6 +235,26 @@ class View {
       if (!trouble.empty() && trouble != told_) fmt::print(stderr, "{}\n", trouble);
       told_ = trouble;
       redraw_ = std::max(redraw_, 1);
+    }
+    if (state_.costs_job != costs_job_) {
+      costs_job_ = state_.costs_job;
+      for (const auto& [name, cost] : state_.costs) {
+        std::vector<float>& history = history_[name];
+        if (history.size() == kHistory) history.erase(history.begin());
+        history.push_back(static_cast<float>(cost.ns_per_pixel));
+      }
+    }
+    if (counter_) {
+      if (auto news = counter_->News()) {
+        cycles_ = std::move(*news);
+        redraw_ = std::max(redraw_, 1);
+      }
+    }
+    if (inspector_) {
+      if (auto news = inspector_->News()) {
+        inspection_ = std::move(*news);
+        redraw_ = std::max(redraw_, 1);
+      }
     }
     if (const Watch::Change change = watch_.Poll(); change.shaders || change.scene) {
       if (change.shaders) ++library_;
@@ -274,7 +296,7 @@ class View {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    PanelContext context{session_, state_, worker_.progress(), unit_, message_, trouble_, inspection_};
+    PanelContext context{session_, state_, worker_.progress(), unit_, message_, trouble_, inspection_, inspector_ && inspector_->busy(), cycles_, history_};
     context.flicker_pane = FlickerPane();
     const float bar = bare_ ? 0.0f : BarHeight(context), column = bare_ ? 0.0f : ColumnWidth(context);
     origin_ = {0.0, bar};
@@ -285,6 +307,7 @@ class View {
     PanelRequests requests;
     if (!bare_) {
       DrawOverlay(context, glm::vec2(origin_), glm::vec2(size_));
+      if (session_.inspected && session_.show_lobe) DrawLobe(context, glm::vec2(origin_ + size_));
       DrawBar(context, ImGui::GetIO().DisplaySize.x, requests);
       DrawColumn(context, {static_cast<float>(size_.x), bar}, {column, static_cast<float>(size_.y)}, requests);
       if (help_) DrawHelp(context, glm::vec2(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y));
@@ -294,11 +317,13 @@ class View {
     if (requests.screenshot) wanted_shot_ = Numbered(".png");
     if (requests.turntable) StartTurntable(session_.scene.name + "_turntable");
     if (requests.snapshot) KeepSnapshot();
+    if (requests.copy != nullptr) CopyCase(*requests.copy);
     if (requests.exr) wanted_shot_ = Numbered(".exr");
     if (!ImGui::IsAnyItemActive() && !gizmo_.dragging()) session_.Commit();
     ImGui::Render();
 
     Submit();
+    Count();
     Title();
     Composite(framebuffer);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -333,7 +358,8 @@ class View {
 
   // What a window list and a script can see: the scene, and whether the picture is whole.
   void Title() {
-    const bool whole = state_.full && state_.job == submitted_ && worker_.progress() >= 1.0;
+    const bool looking = inspector_ && inspector_->busy();
+    const bool whole = state_.full && state_.job == submitted_ && worker_.progress() >= 1.0 && !looking;
     const std::string title = session_.scene.name + (whole ? "" : " …") + " – AreaLab";
     if (title != title_) glfwSetWindowTitle(window_.window, (title_ = title).c_str());
   }
@@ -355,26 +381,39 @@ class View {
       const ShownVariant& pane = session_.panes[static_cast<std::size_t>(i)];
       if (!pane.name.starts_with('#')) job.variants.push_back(pane);
     }
-    if (session_.inspected) job.probe = glm::min(glm::ivec2(*session_.inspected * glm::dvec2(job.size)), job.size - 1);
     job.effects_off = session_.effects_off;
+    job.geometry = session_.geometry;
     job.library = library_;
     job.measure = session_.measure;
     const Scene& scene = session_.scene;
     const bool same = last_.scene && job.size == last_.size && job.variants == last_.variants &&
-                      job.effects_off == last_.effects_off && job.library == last_.library && job.measure == last_.measure && job.probe == last_.probe &&
-                      session_.geometry == last_geometry_ && Same(scene.camera, last_.scene->camera) &&
-                      Same(Edits{scene.lights, scene.materials, 0.0}, {last_.scene->lights, last_.scene->materials, 0.0});
+                      job.effects_off == last_.effects_off && job.library == last_.library && job.measure == last_.measure &&
+                      job.geometry == last_.geometry && Same(scene.camera, last_.scene->camera) &&
+                      Same(Edits{scene.lights, scene.materials, 0.0, scene.sky}, {last_.scene->lights, last_.scene->materials, 0.0, last_.scene->sky});
     if (same) {
       inputs.first.reset();
       return;
     }
     job.scene = std::make_shared<const Scene>(scene);
     last_ = job;
-    last_geometry_ = session_.geometry;
     submitted_ = worker_.Submit(std::move(job));
     submitted_at_ = inputs.first.value_or(Clock::now());
     if (inputs.first) waiting_.emplace_back(submitted_, *inputs.first);
     inputs.first.reset();
+  }
+
+  // Cycles depend on what is shown, not on how it moves: asked for once things rest.
+  void Count() {
+    if (std::exchange(was_measuring_, session_.measure) != session_.measure) glfwSwapInterval(session_.measure ? 0 : 1);
+    if (!session_.measure || !state_.full || state_.job != submitted_ || (counted_job_ == submitted_ && counted_gpu_ == session_.gpu)) return;
+    counted_job_ = submitted_;
+    counted_gpu_ = session_.gpu;
+    if (!counter_) counter_.emplace([this] { return MakeCycleCounter(options_.shader_folder, options_.cache); }, glfwPostEmptyEvent);
+    CyclesJob job{last_.scene, {}, last_.effects_off, session_.gpu};
+    for (const ShownVariant& shown : last_.variants) {
+      if (shown.name != kTruth) job.variants.push_back(shown.name);
+    }
+    counter_->Submit(std::move(job));
   }
 
   int FlickerPane() const { return static_cast<int>(Seconds(Clock::now().time_since_epoch()) / kFlickerSeconds) % 2; }
@@ -565,28 +604,20 @@ class View {
     if (kind < 2) session_.inspected.reset();
   }
 
+  // Asks once per whole picture: what is coarse is not worth a look.
   void Inspect() {
-    const auto pixel = PixelAt(*session_.inspected);
-    if (!pixel) return;
-    if (inspected_pixels_ != state_.pixels || inspected_at_ != *session_.inspected || inspected_lobe_ != session_.lobe) {
-      inspected_pixels_ = state_.pixels;
-      inspected_at_ = *session_.inspected;
-      inspected_lobe_ = session_.lobe;
-      inspection_ = InspectPixel(session_.scene, *state_.pixels, *pixel, session_.lobe);
-    }
-    inspection_.pixel = glm::ivec2(*session_.inspected * glm::dvec2(PaneSize()));
-    inspection_.values.clear();
-    const auto lobe = [&](const glm::vec3& diffuse, const glm::vec3& specular) {
-      return session_.lobe == Lobe::kTotal ? diffuse + specular : session_.lobe == Lobe::kDiffuse ? diffuse : specular;
-    };
-    for (const ShadedVariant& shaded : state_.variants) {
-      if (!shaded.image || shaded.image->size() != state_.pixels->size()) continue;
-      inspection_.values.emplace_back(shaded.variant.name, lobe(shaded.image->diffuse[*pixel], shaded.image->specular[*pixel]));
-    }
-    for (const auto& [name, value] : state_.probes) {
-      const bool known = std::any_of(inspection_.values.begin(), inspection_.values.end(), [&](const auto& v) { return v.first == name; });
-      if (!known) inspection_.values.emplace_back(name, lobe(value.first, value.second));
-    }
+    const glm::ivec2 pixel = glm::clamp(glm::ivec2(*session_.inspected * glm::dvec2(last_.size)), glm::ivec2(0), last_.size - 1);
+    if (!state_.full || state_.job != submitted_ || (inspected_job_ == submitted_ && inspected_pixel_ == pixel)) return;
+    inspected_job_ = submitted_;
+    inspected_pixel_ = pixel;
+    if (!inspector_) inspector_.emplace([this] { return MakeInspector(options_.context, options_.shader_folder); }, glfwPostEmptyEvent);
+    inspector_->Submit({last_.scene, last_.size, pixel, last_.variants, last_.effects_off, last_.library});
+  }
+
+  void CopyCase(const LightAtPixel& light) {
+    const std::string line = CaseLine(light.test_case);
+    glfwSetClipboardString(window_.window, line.c_str());
+    Say(fmt::format("copied for `arealab stress --case`: {}", line));
   }
 
   void Keys() {
@@ -609,6 +640,9 @@ class View {
       case GLFW_KEY_Y: return session_.Redo();
       case GLFW_KEY_S: return Save();
       case GLFW_KEY_R: return Restore();
+      case GLFW_KEY_C:
+        if (session_.inspected && inspection_.surface && !inspection_.lights.empty()) CopyCase(inspection_.lights.front());
+        return;
       case GLFW_KEY_Q: return glfwSetWindowShouldClose(window_.window, GLFW_TRUE);
       default: return;
     }
@@ -740,14 +774,18 @@ class View {
   Watch watch_;
   Gizmo gizmo_;
   ViewState state_;
+  std::optional<Inspector> inspector_;  // once a pixel was asked for
   Inspection inspection_;
-  std::shared_ptr<const SurfacePixels> inspected_pixels_;
-  glm::dvec2 inspected_at_{-1.0};
-  Lobe inspected_lobe_ = Lobe::kTotal;
+  std::optional<CycleCounter> counter_;  // once cycles were asked for
+  Cycles cycles_;
+  std::map<std::string, std::vector<float>> history_;
+  std::string counted_gpu_;
+  std::uint64_t inspected_job_ = 0, counted_job_ = 0, costs_job_ = 0;
+  glm::ivec2 inspected_pixel_{-1};
   std::future<Scene> loading_;
 
   ViewJob last_;
-  std::uint64_t last_geometry_ = 0, submitted_ = 0, full_job_ = 0, shown_job_ = 0, library_ = 0;
+  std::uint64_t submitted_ = 0, full_job_ = 0, shown_job_ = 0, library_ = 0;
   Clock::time_point submitted_at_{}, last_frame_{}, said_{}, autosaved_ = Clock::now();
   std::vector<std::pair<std::uint64_t, Clock::time_point>> waiting_;  // jobs whose picture is not yet seen, and their input
   Figures figures_;
@@ -762,6 +800,7 @@ class View {
   double floor_ = 0.0;
   float unit_ = 16.0f;
   int redraw_ = 3, drawn_ = 0, turn_ = 0;
+  bool was_measuring_ = false;
   bool bare_ = false, help_ = false, trouble_ = false, done_ = false;
 };
 
@@ -786,17 +825,18 @@ void WatchInputs(GLFWwindow* window) {
   glfwSetWindowFocusCallback(window, [](GLFWwindow*, int) { inputs.any = true; });
 }
 
-// The panes to begin with: those that were asked for, else LTC beside the reference.
+// The panes to begin with: those that were asked for, else LTC beside the truth.
 void ChoosePanes(const ViewOptions& options, Session& session) {
   const ShaderLibrary library = options.shader_folder.empty() ? ShaderLibrary() : ShaderLibrary(options.shader_folder);
   const std::vector<Technique> techniques = LoadTechniques(library);
   for (const std::string& name : options.techniques) {
+    if (name == kTruth) continue;
     const Variant variant = ParseVariant(techniques, name);
     if (const auto why = WhyUnsupported(variant, session.scene)) {
       throw InputError(fmt::format("{}: {}; expected a technique that supports the scene", session.scene.file.string(), *why));
     }
   }
-  const char* const others[] = {"ltc", "reference", "hill", "point"};
+  const char* const others[] = {"ltc", kTruth, "hill", "point"};
   std::vector<std::string> names = options.techniques;
   for (const char* other : others) {
     if (names.size() < 4 && std::find(names.begin(), names.end(), other) == names.end()) names.emplace_back(other);

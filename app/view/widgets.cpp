@@ -76,7 +76,8 @@ void ApplyStyle(float pixels) {
   c[ImGuiCol_SliderGrab] = Gray(0.42f);
   c[ImGuiCol_SliderGrabActive] = {0.94f, 0.69f, 0.36f, 1.0f};
   c[ImGuiCol_CheckMark] = {0.94f, 0.69f, 0.36f, 1.0f};
-  c[ImGuiCol_PlotHistogram] = {0.94f, 0.69f, 0.36f, 1.0f};
+  c[ImGuiCol_PlotLines] = c[ImGuiCol_PlotHistogram] = {0.94f, 0.69f, 0.36f, 1.0f};
+  c[ImGuiCol_PlotLinesHovered] = {0.94f, 0.69f, 0.36f, 1.0f};
   c[ImGuiCol_ScrollbarBg] = Gray(0.0f, 0.0f);
   c[ImGuiCol_ScrollbarGrab] = Gray(0.25f);
   c[ImGuiCol_TextSelectedBg] = {0.94f, 0.69f, 0.36f, 0.35f};

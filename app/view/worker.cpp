@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 #include <sys/syscall.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <ranges>
 #include <utility>
 
+#include "app/view/truth_picture.h"
 #include "compare/harness.h"
 #include "compare/timing.h"
 #include "glsl/renderer.h"
@@ -61,7 +63,8 @@ class Worker::Shading {
     }
     // What is quick enough for a hand is never dropped, or a hand that keeps moving would see nothing.
     DrawPicture(job, number, job.size, true, divisor > 1);
-    if (job.probe) Probe(job);
+    RefineTruth(job, number);
+    worker_.Publish([](ViewState& state) { state.full = true; });
     if (job.measure) Measure(job, number);
   }
 
@@ -104,10 +107,15 @@ class Worker::Shading {
     worker_.Publish([&](ViewState& state) {
       state.error.clear();
       state.variants.resize(job.variants.size());
-      state.probes.clear();
     });
     for (std::size_t i = 0; i < job.variants.size(); ++i) {
-      ShadedVariant shaded{job.variants[i], number, nullptr, emission, "", 0.0};
+      ShadedVariant shaded{job.variants[i], number, nullptr, emission, "", 0.0, ""};
+      if (shaded.variant.name == kTruth) {
+        // What is known of it stays; where it is about to be refined, its coarse stand-in is not drawn anew.
+        const bool known = truth_.share() > 0.0 && truth_.Is(*job.scene, job.geometry, job.size);
+        if (known) worker_.Publish([&](ViewState& state) { state.variants[i] = TruthNow(number); });
+        if (known || (full && worker_.state_.variants[i].job == number)) continue;
+      }
       try {
         shaded.image = ShadeVariant(job.variants[i], size, may_stop, shaded.seconds,
                                     static_cast<double>(i) / static_cast<double>(job.variants.size()),
@@ -118,16 +126,45 @@ class Worker::Shading {
       worker_.Publish([&](ViewState& state) { state.variants[i] = std::move(shaded); });
     }
     auto kept = std::make_shared<const SurfacePixels>(pixels);
-    worker_.Publish([&](ViewState& state) {
-      state.pixels = std::move(kept);
-      state.full = full;
-    });
+    worker_.Publish([&](ViewState& state) { state.pixels = std::move(kept); });
+  }
+
+  bool Shows(const ViewJob& job, const char* name) const {
+    return std::ranges::any_of(job.variants, [&](const ShownVariant& shown) { return shown.name == name; });
+  }
+
+  // From the coarse picture that stands in for it, in parts: a newer job has the processors after a few milliseconds.
+  void RefineTruth(const ViewJob& job, std::uint64_t number) {
+    if (!Shows(job, kTruth)) return;
+    const std::shared_ptr<const SurfacePixels> pixels = worker_.state_.pixels;
+    const auto stand_in = std::ranges::find(worker_.state_.variants, kTruth, [](const ShadedVariant& shaded) { return shaded.variant.name; });
+    truth_.Begin(job.scene, job.geometry, *pixels, stand_in->image);
+    truth_emission_ = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(*job.scene, *pixels));
+    while (true) {
+      worker_.Publish([&](ViewState& state) {
+        for (ShadedVariant& shaded : state.variants) {
+          if (shaded.variant.name == kTruth) shaded = TruthNow(number);
+        }
+      });
+      if (truth_.complete()) return;
+      truth_.Refine([&](double fraction) {
+        worker_.progress_ = fraction;
+        if (worker_.stop_ || worker_.Overtaken()) throw Cancelled();
+      });
+    }
+  }
+
+  ShadedVariant TruthNow(std::uint64_t number) const {
+    ShadedVariant shaded{{kTruth, {}}, number, truth_.image(), truth_emission_, "", 0.0, ""};
+    if (truth_.share() > 0.0) shaded.note = fmt::format("±{:.1g} %", 100.0 * truth_.error());
+    if (!truth_.complete()) shaded.note += fmt::format("{}{:.0f} % of it", shaded.note.empty() ? "" : ", ", 100.0 * truth_.share());
+    return shaded;
   }
 
   // In strips where it may be dropped, so that a newer job need not wait for it.
   std::shared_ptr<const RadianceImage> ShadeVariant(const ShownVariant& shown, glm::ivec2 size, bool may_stop,
                                                     double& seconds, double progress, double share) {
-    const Variant variant = ParseVariant(*techniques_, shown.name);
+    const Variant variant = ParseVariant(*techniques_, shown.name == kTruth ? "reference" : shown.name);
     auto image = std::make_shared<RadianceImage>();
     renderer_->ShadeRows(variant, shown.knobs, 0, 1, *image);  // compiles; what that takes is not the shading's rate
     Rate& rate = rates_[shown.name];
@@ -148,30 +185,11 @@ class Worker::Shading {
     return image;
   }
 
-  // One row of each technique is enough to see one pixel of it.
-  void Probe(const ViewJob& job) {
-    const std::vector<Variant> variants = DefaultVariants(*techniques_);
-    const std::size_t pixel = static_cast<std::size_t>(job.probe->y) * static_cast<std::size_t>(job.size.x) +
-                              static_cast<std::size_t>(job.probe->x);
-    RadianceImage image;
-    for (std::size_t i = 0; i < variants.size(); ++i) {
-      if (worker_.stop_ || worker_.Overtaken()) throw Cancelled();
-      worker_.progress_ = static_cast<double>(i) / static_cast<double>(variants.size());
-      if (WhyUnsupported(variants[i], *job.scene)) continue;
-      try {
-        renderer_->ShadeRows(variants[i], {}, job.probe->y, 1, image);
-      } catch (const std::exception&) {
-        continue;  // a shader that does not compile says so where it is shown
-      }
-      worker_.Publish([&](ViewState& state) {
-        state.probes[variants[i].ShortName()] = {image.diffuse[pixel], image.specular[pixel]};
-      });
-    }
-  }
-
   void Measure(const ViewJob& job, std::uint64_t number) {
     std::vector<Variant> variants;
-    for (const ShownVariant& shown : job.variants) variants.push_back(ParseVariant(*techniques_, shown.name));
+    for (const ShownVariant& shown : job.variants) {
+      if (shown.name != kTruth) variants.push_back(ParseVariant(*techniques_, shown.name));
+    }
     std::erase_if(variants, [&](const Variant& v) { return WhyUnsupported(v, *job.scene).has_value(); });
     const Variant point = ParseVariant(*techniques_, "point");
     if (variants.empty() || WhyUnsupported(point, *job.scene)) return;
@@ -190,7 +208,8 @@ class Worker::Shading {
     worker_.Publish([&](ViewState& state) {
       state.costs.clear();
       for (std::size_t i = 0; i < variants.size(); ++i) {
-        state.costs[variants[i].Name()] = {times[i].net_ns_per_pixel.value, times[i].ratio_to_point.value};
+        const double ns = times[i].ns_per_pixel.value;
+        state.costs[variants[i].Name()] = {1e-6 * ns * static_cast<double>(lit), ns, times[i].net_ns_per_pixel.value, times[i].ratio_to_point.value};
       }
       state.costs_job = number;
     });
@@ -204,6 +223,8 @@ class Worker::Shading {
   std::unique_ptr<Renderer> renderer_;
   Rate scene_rate_;
   std::map<std::string, Rate> rates_;
+  TruthPicture truth_;
+  std::shared_ptr<const std::vector<glm::vec3>> truth_emission_;
 
   friend class Worker;
 };

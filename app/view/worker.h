@@ -25,7 +25,10 @@
 
 namespace arealab {
 
-// A variant by its name and its knobs: the registry that the name refers to is the worker's, and changes with the files.
+// What stands for the truth among the variants: it is no technique.
+constexpr const char* kTruth = "truth";
+
+// A variant by its name and its knobs, or kTruth: the registry that the name refers to is the worker's, and changes with the files.
 struct ShownVariant {
   std::string name;
   std::map<std::string, double> knobs;
@@ -37,9 +40,9 @@ struct ViewJob {
   glm::ivec2 size{0};  // pixels, of the whole picture
   std::vector<ShownVariant> variants;
   std::set<std::string> effects_off;
+  std::uint64_t geometry = 0;  // another number: other meshes
   std::uint64_t library = 0;  // another number: shader files have changed, read them again
   bool measure = false;       // time the variants once the picture is whole
-  std::optional<glm::ivec2> probe;  // a pixel at which every technique's default is shaded once the picture is whole
 };
 
 // What became of one variant of a job.
@@ -49,25 +52,26 @@ struct ShadedVariant {
   std::shared_ptr<const RadianceImage> image;  // smaller than the job's size while things move; null where it failed
   std::shared_ptr<const std::vector<glm::vec3>> emission;  // of the lights that are seen, per pixel of `image`
   std::string error;                                       // why it failed: one line
-  double seconds = 0.0;                                    // wall time of shading and reading back
+  double seconds = 0.0;                                    // wall time of shading and reading back; of the truth 0
+  std::string note;                                        // of the truth: how far it is, and its own error
 };
 
 struct Cost {
-  double ns_per_pixel = 0.0;  // of a lit pixel, less a pass that only reads and writes
+  double milliseconds = 0.0;  // of the lighting pass for this view
+  double ns_per_pixel = 0.0, net_ns_per_pixel = 0.0;  // of a lit pixel; less a pass that only reads and writes
   double ratio_to_point = 0.0;
 };
 
 // Everything that the worker has found out, whole at all times: parts are replaced as they come.
 struct ViewState {
   std::uint64_t job = 0;                          // begun last
-  bool full = false;                              // every variant of that job at its full size
+  bool full = false;                              // every variant of that job at its full size, the truth complete
   std::vector<ShadedVariant> variants;            // in the job's order
   std::shared_ptr<const SurfacePixels> pixels;    // of the last picture, coarse or whole
   std::shared_ptr<const std::vector<Technique>> techniques;  // null before the first job
   std::string error;                                         // of the scene or the registry as a whole
   std::map<std::string, Cost> costs;                         // by variant, of `costs_job`
   std::uint64_t costs_job = 0;
-  std::map<std::string, std::pair<glm::vec3, glm::vec3>> probes;  // diffuse, specular at the job's probe, by variant
   std::string platform, renderer;
   bool software = true;
 };

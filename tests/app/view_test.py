@@ -221,7 +221,7 @@ class ViewTest(unittest.TestCase):
 
     def test_a_screenshot_is_the_render_of_the_same_variant(self):
         scene = self.scene()
-        for technique in ("ltc", "drobot@published"):
+        for technique in ("ltc", "drobot@published", "truth"):
             arealab("view", scene, "--bare", "--technique", technique, "--size", "320x200", "--frames", 2, "--screenshot", "seen.png",
                     "--context", "osmesa")
             arealab("render", scene, "--technique", technique, "--size", "320x200", "-o", "rendered.png", "--context", "osmesa")
@@ -258,6 +258,27 @@ class ViewTest(unittest.TestCase):
         self.assertFalse(line(rows, middle))
         figures = window.leave()
         self.assertGreater(figures["input_to_picture_ms"]["count"], 0)
+
+    def test_a_pixel_is_copied_as_a_test_case(self):
+        window = self.window(self.scene(), "--technique", "ltc")
+        window.settled()
+        window.do("mousemove", WIDTH // 2 - 60, 380, "keydown", "shift", "click", "1", "keyup", "shift")
+        window.settled()
+        window.do("mousemove", WIDTH + 245, 67, "click", "1", "mousemove", 100, 500)  # the tab of the pixel
+        window.settled()
+        window.do("key", "ctrl+c")
+        until(lambda: "copied for" in window.log(), "copy")
+        case = window.log().rsplit("--case`: ", 1)[1].strip()
+        pixel = window.leave()["pixel"]
+        self.assertEqual(pixel["cases"], [case])
+        row = [line for line in arealab("stress", "--case", case, "--technique", "ltc", "--context", "osmesa").stdout.splitlines() if line.startswith("ltc ")]
+        diffuse, diffuse_double, _, specular, specular_double = map(float, row[0].split()[1:6])
+        seen = pixel["values"]["ltc"]
+        for mine, theirs in zip(seen["float"] + seen["double"], (0.3 * diffuse, specular, 0.3 * diffuse_double, specular_double)):
+            self.assertLess(abs(mine / theirs - 1.0), 2e-6)
+        self.assertNotEqual(seen["float"], seen["double"])
+        self.assertLess(abs(sum(pixel["truth"]) / sum(pixel["values"]["reference"]["double"]) - 1.0), 1e-3)
+        self.assertGreater(len(pixel["values"]), 6)
 
     def test_move_a_light_type_a_roughness_undo_save_reopen(self):
         file = self.scene()

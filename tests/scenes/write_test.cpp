@@ -15,6 +15,7 @@
 namespace arealab::write_test {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -87,6 +88,28 @@ TEST(SceneWriter, TheSkyStays) {
   const std::string edited = Edited(before, after, text);
   EXPECT_THAT(edited, HasSubstr("[sky]\nradiance = 0.25   # dusk\ncolor = [0.5, 0.7, 1.0]\n"));
   EXPECT_EQ(Read(edited).sky, before.sky);
+}
+
+TEST(SceneWriter, TheSkyChangesComesAndGoes) {
+  std::string text = kText;
+  text.insert(text.find("[camera]"), "[sky]\nradiance = 0.25   # dusk\ncolor = [0.5, 0.7, 1.0]\n\n");
+  const auto edited = [](const std::string& from, const glm::dvec3& sky) {
+    const Scene before = Read(from);
+    Scene after = before;
+    after.sky = sky;
+    std::string to = Edited(before, after, from);
+    EXPECT_LT(glm::distance(*Read(to).sky, sky), 1e-5 * glm::length(sky));
+    return to;
+  };
+  EXPECT_THAT(edited(text, 2.0 * *Read(text).sky), HasSubstr("[sky]\nradiance = 0.5   # dusk\ncolor = [0.5, 0.7, 1.0]\n"));
+  EXPECT_THAT(edited(text, {0.3, 0.2, 0.1}), HasSubstr("   # dusk\ncolor = [1.0, 0.6666667, 0.3333333]\n"));
+  EXPECT_THAT(edited(kText, {0.3, 0.2, 0.1}), EndsWith("\n[sky]\nradiance = [0.3, 0.2, 0.1]\n"));
+  edited(edited(kText, {0.3, 0.2, 0.1}), {0.1, 0.1, 0.1});
+
+  const Scene before = Read(text);
+  Scene after = before;
+  after.sky.reset();
+  EXPECT_FALSE(Read(Edited(before, after, text)).sky);
 }
 
 TEST(SceneWriter, OneNumberChangesOneLine) {
@@ -236,10 +259,11 @@ TEST(SceneWriter, MaterialsExposureCamera) {
   Scene after = before;
   after.materials[0].roughness = glm::vec2(0.3f);
   after.materials[0].base_color = glm::vec3(0.1f);
+  after.materials[0].specular = 0.5f;
   after.exposure = -1.0;
   after.camera.vertical_fov = glm::radians(50.0);
   const std::string text = Edited(before, after);
-  EXPECT_THAT(text, HasSubstr("base_color = 0.1\nroughness = 0.3\n"));
+  EXPECT_THAT(text, HasSubstr("base_color = 0.1\nroughness = 0.3\nspecular = 0.5\n"));
   EXPECT_THAT(text, HasSubstr("exposure = -1.0   # stops"));
   EXPECT_THAT(text, HasSubstr("vertical_fov = 50.0\n"));
 }

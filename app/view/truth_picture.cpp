@@ -1,0 +1,120 @@
+#include "app/view/truth_picture.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/view/session.h"
+#include "compare/shadowed_truth.h"
+#include "compare/truth.h"
+#include "compare/truth_bands.h"
+
+namespace arealab {
+namespace {
+
+// A part is laid out in short rows: truth is computed, and stopped, in bands of eight.
+constexpr std::size_t kRow = 64;
+constexpr int kGrids[] = {4, 2, 1};  // px between the pixels of a pass
+constexpr std::size_t kPartsOfLast = 8;
+
+bool SameLook(const Scene& a, const Scene& b) {
+  return a.brdf == b.brdf && Same(a.camera, b.camera) && Same(Edits{a.lights, a.materials, 0.0, a.sky}, Edits{b.lights, b.materials, 0.0, b.sky});
+}
+
+}  // namespace
+
+bool TruthPicture::Is(const Scene& scene, std::uint64_t geometry, glm::ivec2 size) const {
+  return scene_ && geometry == geometry_ && size == glm::ivec2(pixels_.width, pixels_.height) && SameLook(scene, *scene_);
+}
+
+void TruthPicture::Begin(std::shared_ptr<const Scene> scene, std::uint64_t geometry, const SurfacePixels& pixels,
+                         std::shared_ptr<const RadianceImage> stand_in) {
+  if (Is(*scene, geometry, {pixels.width, pixels.height})) return;
+  scene_ = std::move(scene);
+  geometry_ = geometry;
+  pixels_ = pixels;
+  stand_in_ = std::move(stand_in);
+  truth_ = {pixels.width, pixels.height, std::vector<glm::vec3>(pixels.size(), glm::vec3(0.0f)), std::vector<glm::vec3>(pixels.size(), glm::vec3(0.0f))};
+  is_known_.assign(pixels.size(), false);
+  order_.clear();
+  ends_.clear();
+  int before = 0;
+  for (const int grid : kGrids) {
+    for (int y = 0; y < pixels.height; y += grid) {
+      for (int x = 0; x < pixels.width; x += grid) {
+        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(pixels.width) + static_cast<std::size_t>(x);
+        const bool done = before > 0 && x % before == 0 && y % before == 0;
+        if (!done && pixels.IsSurface(i)) order_.push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+    const std::size_t first = ends_.empty() ? 0 : ends_.back(), count = order_.size() - first;
+    const std::size_t parts = grid == 1 ? kPartsOfLast : 1;
+    for (std::size_t k = 1; k <= parts; ++k) ends_.push_back(first + count * k / parts);
+    before = grid;
+  }
+  known_ = 0;
+  errors_.clear();
+  error_ = 0.0;
+  Show();
+}
+
+void TruthPicture::Refine(const std::function<void(double)>& progress) {
+  const auto end = std::ranges::find_if(ends_, [&](std::size_t e) { return e > known_; });
+  if (end == ends_.end()) return;
+  const std::size_t count = *end - known_, rows = (count + kRow - 1) / kRow;
+  SurfacePixels part{static_cast<int>(kRow), static_cast<int>(rows), pixels_.view_position, {}, {}, {}, {}};
+  part.position.resize(rows * kRow);
+  part.normal.resize(rows * kRow);
+  part.base_color.resize(rows * kRow);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = order_[known_ + k];
+    part.position[k] = pixels_.position[i];
+    part.normal[k] = pixels_.normal[i];
+    part.base_color[k] = pixels_.base_color[i];
+  }
+  const double begin = share(), reach = static_cast<double>(count) / static_cast<double>(order_.size());
+  const bool shadows = scene_->aperture.has_value();  // techniques have visibility there
+  TruthOptions options;
+  options.progress = [&](double fraction) { progress(begin + reach * fraction * (shadows ? 0.3 : 1.0)); };
+  Truth truth = ComputeTruth(*scene_, part, options);
+  if (shadows) {
+    ShadowOptions shadow_options;
+    shadow_options.progress = [&](double fraction) { progress(begin + reach * (0.3 + 0.7 * fraction)); };
+    ShadowedTruth shadowed = ComputeShadowedTruth(*scene_, part, truth.radiance, options, shadow_options);
+    truth.radiance = std::move(shadowed.radiance);
+    for (std::size_t k = 0; k < count; ++k) truth.relative_error[k] = std::max(truth.relative_error[k], shadowed.relative_error[k]);
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = order_[known_ + k];
+    truth_.diffuse[i] = truth.radiance.diffuse[k];
+    truth_.specular[i] = truth.radiance.specular[k];
+    is_known_[i] = true;
+    if (truth.radiance.Total(k) != glm::vec3(0.0f)) errors_.push_back(truth.relative_error[k]);
+  }
+  known_ += count;
+  error_ = Quantile(errors_, 0.999);
+  Show();
+}
+
+// What is not known yet has the value of its square of the finest grid that is, else the stand-in's.
+void TruthPicture::Show() {
+  auto image = std::make_shared<RadianceImage>(truth_);
+  const auto width = static_cast<std::size_t>(truth_.width);
+  for (std::size_t i = 0; !complete() && i < truth_.size(); ++i) {
+    if (is_known_[i] || !pixels_.IsSurface(i)) continue;
+    const std::size_t x = i % width, y = i / width;
+    const std::size_t near = (y & ~std::size_t{1}) * width + (x & ~std::size_t{1}), far = (y & ~std::size_t{3}) * width + (x & ~std::size_t{3});
+    if (is_known_[near] || is_known_[far]) {
+      const std::size_t source = is_known_[near] ? near : far;
+      image->diffuse[i] = truth_.diffuse[source];
+      image->specular[i] = truth_.specular[source];
+    } else if (stand_in_) {
+      const auto of = [](std::size_t at, int to, int from) { return at * static_cast<std::size_t>(to) / static_cast<std::size_t>(from); };
+      const std::size_t source = of(y, stand_in_->height, truth_.height) * static_cast<std::size_t>(stand_in_->width) + of(x, stand_in_->width, truth_.width);
+      image->diffuse[i] = stand_in_->diffuse[source];
+      image->specular[i] = stand_in_->specular[source];
+    }
+  }
+  image_ = std::move(image);
+}
+
+}  // namespace arealab
