@@ -15,13 +15,16 @@ void AddView(CLI::App& app, int& /*status*/) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("view", "Open a scene in a window: edit it live, compare variants side by side");
   ViewOptions& view = arguments->view;
-  command->add_option("scene", view.scene, "a built-in name, a scene file, or a mesh (.gltf, .glb, .obj, .ply, .stl, .3ds)")->required();
+  command->add_option("scene", view.scene, "a built-in name, a scene file, or a mesh (.gltf, .glb, .obj, .ply, .stl, .3ds); default: the last one");
   command->add_option("--technique", view.techniques, "a variant, or truth, for pane A, then B, C, D (default: ltc, truth)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--layout", view.layout, "how panes are compared (default: by the number of techniques)")
       ->check(CLI::IsMember({"single", "wipe", "difference", "flicker", "grid"}));
   command->add_option("--size", arguments->size, "of the window, WxH in pixels (default: as it was left, first 1280x720)");
+  command->add_option("--transform", view.transform, "view transform (default: srgb; ocio: the first view of the configuration that OCIO names)")
+      ->check(CLI::IsMember({"srgb", "aces", "neutral", "agx", "ocio", "false"}));
+  command->add_flag("--captions", view.captions, "the picture and its captions, without controls (Tab in the window)");
   command->add_flag("--bare", view.bare, "the picture alone, without controls (Tab in the window)");
   command->add_option("--frames", view.frames, "draws so many frames of the whole picture, then leaves (default: until closed)")
       ->check(CLI::Range(1, 1000000));

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "app/view/ocio.h"
 #include "scenes/embedded.h"
 
 namespace arealab {
@@ -132,11 +133,21 @@ void Display::SetPicture(int index, const std::shared_ptr<const RadianceImage>& 
   gl_.TextureSubImage2D(slot.texture.id(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, texels_.data());
 }
 
+void Display::SetViewTable(const std::vector<glm::vec4>& nodes) {
+  GLuint id = 0;
+  gl_.CreateTextures(GL_TEXTURE_3D, 1, &id);
+  view_table_ = GlObject(gl_, id, [](const GladGLContext& table, GLuint name) { table.DeleteTextures(1, &name); });
+  gl_.TextureStorage3D(id, 1, GL_RGBA32F, kViewTableSize, kViewTableSize, kViewTableSize);
+  gl_.TextureSubImage3D(id, 0, 0, 0, 0, kViewTableSize, kViewTableSize, kViewTableSize, GL_RGBA, GL_FLOAT, nodes.data());
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) gl_.TextureParameteri(id, filter, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) gl_.TextureParameteri(id, wrap, GL_CLAMP_TO_EDGE);
+}
+
 const GlObject& Display::Program(PictureKind kind, ViewTransform transform, bool exact) {
   GlObject& program = programs_[{kind, transform, exact}];
   if (program.id() == 0) {
-    program = MakeProgram(gl_, fmt::format("#define KIND {}\n#define TRANSFORM {}\n#define EXACT {}\n", static_cast<int>(kind),
-                                           static_cast<int>(transform), exact ? 1 : 0));
+    program = MakeProgram(gl_, fmt::format("#define KIND {}\n#define TRANSFORM {}\n#define EXACT {}\n#define VIEW_TABLE_LOW {:.1f}\n#define VIEW_TABLE_HIGH {:.1f}\n",
+                                           static_cast<int>(kind), static_cast<int>(transform), exact ? 1 : 0, kViewTableLow, kViewTableHigh));
   }
   return program;
 }
@@ -157,10 +168,11 @@ void Display::Draw(const glm::ivec4& area, int slot_a, int slot_b, const Display
   gl_.Scissor(edge(part.x), area.y, edge(part.y) - edge(part.x), area.w);
   gl_.UseProgram(program);
   gl_.BindVertexArray(vertex_array_.id());
-  for (GLuint unit = 0; unit < 3; ++unit) gl_.BindSampler(unit, 0);
+  for (GLuint unit = 0; unit < 4; ++unit) gl_.BindSampler(unit, 0);
   gl_.BindTextureUnit(0, a.texture.id());
   gl_.BindTextureUnit(1, b.texture.id());
   gl_.BindTextureUnit(2, (settings.kind == PictureKind::kSigned ? signed_scale_ : magnitude_scale_).id());
+  if (settings.transform == ViewTransform::kOcio) gl_.BindTextureUnit(3, view_table_.id());
   const auto place = [&](const char* name) { return gl_.GetUniformLocation(program, name); };
   gl_.Uniform4f(place("area"), static_cast<float>(area.x), static_cast<float>(area.y), static_cast<float>(area.z),
                 static_cast<float>(area.w));

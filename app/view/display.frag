@@ -1,12 +1,15 @@
 // From linear radiance to a display's codes: exposure, view transform, encoding, once. Or from two pictures to a map of
 // their difference. The host puts #version before this and defines
 //   KIND       0 picture_a, 1 signed difference, 2 its magnitude, 3 false colour of picture_a's luminance
-//   TRANSFORM  0 sRGB, 1 ACES fitted, 2 Khronos PBR Neutral, 3 AgX
+//   TRANSFORM  0 sRGB, 1 ACES fitted, 2 Khronos PBR Neutral, 3 AgX, 4 a view of an OpenColorIO configuration
+//   VIEW_TABLE_LOW, VIEW_TABLE_HIGH  log2 of the radiance at the first and the last node of that view's table
 //   EXACT      1 where the pictures are as large as the area, else they are magnified
 
 layout(binding = 0) uniform sampler2D picture_a;  // rgb: radiance; a: 1 where an emitter or nothing is seen, not shaded
 layout(binding = 1) uniform sampler2D picture_b;
 layout(binding = 2) uniform sampler2D color_scale;  // sRGB codes of a map, from its low end to its high one
+
+layout(binding = 3) uniform sampler3D view_table;  // display codes of an OpenColorIO view
 
 uniform vec4 area;      // px: left, bottom, width, height in the window
 uniform float gain;     // 2^EV
@@ -80,6 +83,10 @@ vec3 Displayed(vec3 radiance) {
   return EncodeSrgb(PbrNeutral(v));
 #elif TRANSFORM == 3
   return AgX(v);
+#elif TRANSFORM == 4
+  float nodes = float(textureSize(view_table, 0).x);
+  v = (log2(max(v, exp2(VIEW_TABLE_LOW))) - VIEW_TABLE_LOW) / (VIEW_TABLE_HIGH - VIEW_TABLE_LOW);
+  return texture(view_table, (min(v, 1.0) * (nodes - 1.0) + 0.5) / nodes).rgb;
 #else
   return EncodeSrgb(v);
 #endif

@@ -15,7 +15,7 @@ namespace arealab {
 
 enum class Lobe { kTotal, kDiffuse, kSpecular };
 enum class PictureKind { kPlain, kSigned, kMagnitude, kFalseColor };
-enum class ViewTransform { kSrgb, kAces, kPbrNeutral, kAgx };
+enum class ViewTransform { kSrgb, kAces, kPbrNeutral, kAgx, kOcio };
 
 // The maps' colours are the report's: OKLCH, lightness linear along the scale [Ottosson 2020]. sRGB codes, 0 … 1.
 glm::vec3 SignedColor(double t);     // t in [−1, 1]: blue below, nearly black at 0, orange above
@@ -37,6 +37,8 @@ class Display {
   // Slot 0 … 3. Uploads what is not there yet.
   void SetPicture(int slot, const std::shared_ptr<const RadianceImage>& image,
                   const std::shared_ptr<const std::vector<glm::vec3>>& emission, Lobe lobe);
+  // What kOcio shows: kViewTableSize³ codes (app/view/ocio.h).
+  void SetViewTable(const std::vector<glm::vec4>& nodes);
   bool HasPicture(int slot) const { return slots_[static_cast<std::size_t>(slot)].texture.id() != 0; }
 
   // `area`: px, left, bottom, width, height; `part` of its width alone is painted. Slot b is the reference of a difference.
@@ -57,7 +59,7 @@ class Display {
   const GladGLContext& gl_;
   std::map<std::tuple<PictureKind, ViewTransform, bool>, GlObject> programs_;
   GlObject vertex_array_;
-  GlObject signed_scale_, magnitude_scale_;
+  GlObject signed_scale_, magnitude_scale_, view_table_;
   std::array<Slot, 4> slots_;
   std::vector<glm::vec4> texels_;
 };

@@ -19,7 +19,7 @@ namespace {
 using namespace widgets;
 
 const char* const kPaneLetters[] = {"A", "B", "C", "D"};
-const char* const kTransforms[] = {"sRGB", "ACES", "Neutral", "AgX", "False colour"};
+const char* const kTransforms[] = {"sRGB", "ACES", "Neutral", "AgX"};
 
 constexpr const char* kTruthIs = "The light's own integrals in double, refined while nothing moves; until then the technique `reference` stands in. It says how far it "
                                  "is, and its own error at 99.9 % of the pixels. With shadows where the scene has apertures.";
@@ -210,6 +210,7 @@ void Aim(Light& light, const glm::dvec3& normal) {
 void Reshape(Light& light, LightShape shape) {
   light.shape = shape;
   light.corners.clear();
+  if (shape != LightShape::kRectangle) light.texture.reset(), light.texture_path.clear();
   if (shape == LightShape::kDisk || shape == LightShape::kSphere) {
     light.half_size = glm::dvec2(std::sqrt(light.half_size.x * light.half_size.y));
   }
@@ -310,6 +311,18 @@ void LightControls(Session& session) {
   float kelvin = NearestKelvin(light.radiance);
   if (ImGui::SliderFloat("##kelvin", &kelvin, 1700.0f, 12000.0f, "%.0f K")) recolor(PlanckianColor(kelvin));
   Tip("Colour temperature of a black body, kelvin, that comes nearest to the colour: 2700 a bulb, 6500 daylight. Turning it sets the colour.");
+  if (light.shape == LightShape::kRectangle) {
+    Row("Image", "", "");
+    if (light.texture) {
+      if (ImGui::Button("×")) light.texture.reset(), light.texture_path.clear();
+      Tip("Takes the image away.");
+      ImGui::SameLine();
+      ImGui::TextUnformatted(light.texture_path.c_str());
+    } else {
+      Dim("drop one on the light");
+    }
+    Tip("Each texel × the radiance. The image lies in the scene file's folder.");
+  }
   if (IsFlat(light.shape)) {
     Row("Two-sided", "", "");
     ImGui::Checkbox("##two_sided", &light.two_sided);
@@ -631,6 +644,35 @@ void CostControls(PanelContext& context) {
   if (context.state.software) Note("Times are of a CPU rasteriser, not a GPU.");
 }
 
+void TransformCombo(PanelContext& context) {
+  Session& session = context.session;
+  const auto transform = session.display.transform;
+  const std::string now = session.false_color ? "False colour" : transform == ViewTransform::kOcio ? session.ocio_view : kTransforms[static_cast<int>(transform)];
+  if (ImGui::BeginCombo("##transform", now.c_str(), ImGuiComboFlags_HeightLargest)) {
+    const auto choose = [&](const std::string& name, ViewTransform chosen, const std::string& tip) {
+      if (ImGui::Selectable(name.c_str(), name == now)) {
+        session.false_color = false;
+        session.display.transform = chosen;
+        if (chosen == ViewTransform::kOcio) session.ocio_view = name;
+      }
+      Tip(tip);
+    };
+    choose(kTransforms[0], ViewTransform::kSrgb, "The sRGB curve, clipped at white.");
+    choose(kTransforms[1], ViewTransform::kAces, "ACES reference rendering and sRGB output, fitted.");
+    choose(kTransforms[2], ViewTransform::kPbrNeutral, "Khronos PBR Neutral: colours of materials stay, highlights are compressed.");
+    choose(kTransforms[3], ViewTransform::kAgx, "AgX, its base look.");
+    if (context.ocio_views != nullptr) {
+      for (const std::string& view : *context.ocio_views) {
+        choose(view, ViewTransform::kOcio, fmt::format("A view of your OpenColorIO configuration; the picture's linear sRGB is taken for its {}.", context.ocio_input));
+      }
+    }
+    if (ImGui::Selectable("False colour", session.false_color)) session.false_color = true;
+    Tip("Stops of luminance about middle grey.");
+    ImGui::EndCombo();
+  }
+  Tip("View transform: from linear light to the display's codes.");
+}
+
 void TechniqueTab(PanelContext& context) {
   Session& session = context.session;
   CostControls(context);
@@ -700,12 +742,7 @@ void DrawBar(PanelContext& context, float width, PanelRequests& requests) {
   Tip("Exposure on top of the scene's, stops. Home: 0. A: automatic.");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(6.2f * u);
-  int transform = session.false_color ? 4 : static_cast<int>(session.display.transform);
-  if (ImGui::Combo("##transform", &transform, kTransforms, 5)) {
-    session.false_color = transform == 4;
-    if (transform < 4) session.display.transform = static_cast<ViewTransform>(transform);
-  }
-  Tip("View transform: plain sRGB, ACES (fitted), Khronos PBR Neutral, AgX, or stops of luminance in false colour.");
+  TransformCombo(context);
   ImGui::SameLine(ImGui::GetWindowWidth() - 2.6f * u);
   if (ImGui::Button("?", {1.8f * u, 0.0f})) requests.toggle_help = true;
   Tip("Keys: ?");
@@ -859,7 +896,9 @@ void DrawHelp(PanelContext& context, glm::vec2 window) {
                       {"Ctrl + R", "bring back what a crash left unsaved"},
                       {"F11  F12", "linear EXR, screenshot PNG"},
                       {"Ctrl + Q", "leave"},
-                      {"Tab", "hide or show the controls"},
+                      {"Tab", "controls, captions alone, the picture alone"},
+                      {"Ctrl + plus, minus", "larger, smaller type"},
+                      {"Drop an image", "on a light: it shows it; on the background: a sky"},
                       {"?", "this list"}};
   ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, 0, {0.5f, 0.5f});
   ImGui::SetNextWindowFocus();

@@ -24,6 +24,8 @@ struct PanelContext {
   bool inspecting = false;  // more of it is to come
   const Cycles& cycles;
   const std::map<std::string, std::vector<float>>& history;  // ns a lit pixel, by variant
+  const std::vector<std::string>* ocio_views = nullptr;  // of the user's configuration; null: there is none
+  std::string ocio_input = {};                           // the colour space that it takes the picture for
   int flicker_pane = 0;
   bool over_wipe = false;
 };

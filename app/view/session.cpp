@@ -6,11 +6,13 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <glm/gtc/constants.hpp>
 #include <system_error>
 #include <utility>
 
 #include "compare/aperture_cache.h"
 #include "scenes/error.h"
+#include "scenes/light_texture.h"
 #include "scenes/replace_file.h"
 #include "scenes/write.h"
 
@@ -168,6 +170,42 @@ void Session::Restore() {
   const Scene left = ParseScene(scene.file, ReadSceneText(AutosaveFile()));
   Set({left.lights, left.materials, left.exposure, left.sky});
   Commit();
+}
+
+void Session::ShowImage(std::size_t light_index, const fs::path& file) {
+  Light& shown = scene.lights.at(light_index);
+  if (shown.shape != LightShape::kRectangle) {
+    throw InputError(fmt::format("{}: the light '{}' is a {}; expected a rectangle to show an image", file.string(), shown.name, Name(shown.shape)));
+  }
+  std::error_code error;
+  const fs::path folder = scene.file.has_parent_path() ? scene.file.parent_path() : fs::path(".");
+  const fs::path relative = fs::relative(file, folder, error);
+  if (error || relative.empty() || *relative.begin() == "..") {
+    throw InputError(fmt::format("{}: outside {}; expected an image in the scene's folder, where the scene file can name it", file.string(), folder.string()));
+  }
+  try {
+    shown.texture = LoadLightTexture(file);
+  } catch (const InputError& trouble) {
+    throw InputError(fmt::format("{}: {}", file.string(), trouble.what()));
+  }
+  shown.texture_path = relative.generic_string();
+}
+
+void Session::FillFrom(const fs::path& file) {
+  std::shared_ptr<const Image> image;
+  try {
+    image = LoadLightTexture(file);
+  } catch (const InputError& trouble) {
+    throw InputError(fmt::format("{}: {}", file.string(), trouble.what()));
+  }
+  glm::dvec3 sum(0.0);
+  double weights = 0.0;
+  for (int y = 0; y < image->height; ++y) {  // rows of one latitude each cover less towards the poles
+    const double weight = std::sin(glm::pi<double>() * (y + 0.5) / image->height);
+    for (int x = 0; x < image->width; ++x) sum += weight * glm::dvec3(image->pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width) + static_cast<std::size_t>(x)]);
+    weights += weight * image->width;
+  }
+  scene.sky = sum / weights;
 }
 
 int Session::AddLight() {

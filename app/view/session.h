@@ -62,6 +62,7 @@ class Session {
   double exposure = 0.0;  // EV on top of the scene's
   Lobe lobe = Lobe::kTotal;
   bool false_color = false;
+  std::string ocio_view;  // of the user's configuration, where that is the transform
   Navigation navigation = Navigation::kBlender;
   std::vector<Camera> cameras;  // saved
   GizmoMode gizmo = GizmoMode::kMove;
@@ -101,6 +102,9 @@ class Session {
   bool HasLeftBehind() const;
   void Restore();
 
+  // Makes a light show an image that the scene file can name, or a sky have its mean. Throws InputError.
+  void ShowImage(std::size_t light_index, const std::filesystem::path& file);
+  void FillFrom(const std::filesystem::path& file);
   int AddLight();     // a copy of the selected one, or a first one; its index
   void RemoveLight();  // the selected one, where it is not the last
   // Takes the scene as it is now on disk, keeping how it is looked at; edits since are dropped.

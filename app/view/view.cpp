@@ -22,6 +22,7 @@
 #include "app/view/camera.h"
 #include "app/view/gizmo.h"
 #include "app/view/inspector.h"
+#include "app/view/ocio.h"
 #include "app/view/panels.h"
 #include "app/view/watch.h"
 #include "app/view/widgets.h"
@@ -45,6 +46,8 @@ constexpr double kAutosaveSeconds = 3.0;
 constexpr int kTurntableFrames = 72;
 constexpr double kFlickerSeconds = 0.5;
 constexpr std::size_t kHistory = 64;  // measurements that are remembered
+constexpr float kPlainHeight = 1440.0f;  // px: of a monitor up to which type of 16 px is readable
+constexpr int kMinType = 60, kMaxType = 300;
 constexpr double kClickReach = 4.0;  // px: a press that moves less is a click
 
 // Since the process began, loading of libraries included.
@@ -69,7 +72,8 @@ double SinceProcessStart() {
 // What the next start remembers of this one: a text of "key value" lines in the user's configuration folder.
 struct Remembered {
   glm::ivec2 size{1280, 720};
-  int navigation = 0;
+  int navigation = 0, layout = -1, type = 100;  // type: per cent of what the monitor asks for
+  std::string scene;
 
   static Remembered Load() {
     Remembered remembered;
@@ -77,9 +81,14 @@ struct Remembered {
     for (std::string key; stream >> key;) {
       if (key == "size") stream >> remembered.size.x >> remembered.size.y;
       if (key == "navigation") stream >> remembered.navigation;
+      if (key == "layout") stream >> remembered.layout;
+      if (key == "type") stream >> remembered.type;
+      if (key == "scene") std::getline(stream >> std::ws, remembered.scene);
     }
     remembered.size = glm::clamp(remembered.size, glm::ivec2(320, 240), glm::ivec2(16384, 16384));
     remembered.navigation = std::clamp(remembered.navigation, 0, 1);
+    remembered.layout = std::clamp(remembered.layout, -1, static_cast<int>(Layout::kGrid));
+    remembered.type = std::clamp(remembered.type, kMinType, kMaxType);
     return remembered;
   }
 
@@ -87,7 +96,7 @@ struct Remembered {
     const fs::path folder = ConfigFolder();
     if (folder.empty()) return;
     try {
-      ReplaceFile(folder / "view.conf", fmt::format("size {} {}\nnavigation {}\n", size.x, size.y, navigation));
+      ReplaceFile(folder / "view.conf", fmt::format("size {} {}\nnavigation {}\nlayout {}\ntype {}\nscene {}\n", size.x, size.y, navigation, layout, type, scene));
     } catch (const InputError&) {
       // It is forgotten then.
     }
@@ -177,6 +186,7 @@ struct Inputs {
   std::optional<Clock::time_point> first;  // that no job has answered yet
   bool any = false;
   std::vector<Key> keys;
+  std::vector<std::string> dropped;  // files
   int buttons = 0;        // that are down
   glm::dvec2 cursor{0.0};               // as the events tell, in the window; GLFW would say where it is by now
   glm::dvec2 press{0.0}, release{0.0};  // where a button went down and up last
@@ -189,11 +199,12 @@ void Noticed() {
 
 class View {
  public:
-  View(const ViewOptions& options, GlfwWindow& window, Worker& worker, Session& session)
+  View(const ViewOptions& options, GlfwWindow& window, Worker& worker, Session& session, int type)
       : options_(options), window_(window), worker_(worker), session_(session), display_(window.gl),
-        watch_(options.shader_folder), bare_(options.bare) {
+        watch_(options.shader_folder), type_(type), chrome_(options.bare ? Chrome::kNone : options.captions ? Chrome::kCaptions : Chrome::kAll) {
     watch_.SetScene(session.scene.file);
     Scale();
+    ReadOcio();
     if (session.HasLeftBehind()) Say("an earlier session left unsaved edits of this scene: Ctrl + R brings them back");
     if (!options.turntable.empty()) StartTurntable(options.turntable);
   }
@@ -207,7 +218,11 @@ class View {
     if (options_.json) figures_.Print(session_.inspected && inspection_.surface ? ", " + Json(inspection_) : "");
   }
 
+  int type() const { return type_; }
+
  private:
+  enum class Chrome { kAll, kCaptions, kNone };
+
   // ---------------------------------------------------------------------------------------------- the loop
 
   // Sleeps until something happens: a window that nobody touches costs nothing.
@@ -293,32 +308,44 @@ class View {
     glfwGetFramebufferSize(window_.window, &framebuffer.x, &framebuffer.y);
     glfwGetWindowSize(window_.window, &window_size.x, &window_size.y);
     if (framebuffer.x < 16 || framebuffer.y < 16) return;
+    if (std::exchange(other_type_, false)) {
+      ImGui_ImplOpenGL3_DestroyFontsTexture();
+      Scale();
+      ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+    // A picture that was asked for in the last frame is taken of this one, without what was said since.
+    wanted_shot_ = std::exchange(asked_shot_, {});
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    PanelContext context{session_, state_, worker_.progress(), unit_, message_, trouble_, inspection_, inspector_ && inspector_->busy(), cycles_, history_};
+    PanelContext context{session_, state_, worker_.progress(), unit_, wanted_shot_.empty() ? message_ : "", trouble_, inspection_, inspector_ && inspector_->busy(), cycles_, history_};
     context.flicker_pane = FlickerPane();
-    const float bar = bare_ ? 0.0f : BarHeight(context), column = bare_ ? 0.0f : ColumnWidth(context);
+    if (ocio_) context.ocio_views = &ocio_->views(), context.ocio_input = ocio_->input();
+    const bool all = chrome_ == Chrome::kAll;
+    const float bar = all ? BarHeight(context) : 0.0f, column = all ? ColumnWidth(context) : 0.0f;
     origin_ = {0.0, bar};
     size_ = glm::max(glm::dvec2(ImGui::GetIO().DisplaySize.x - column, ImGui::GetIO().DisplaySize.y - bar), glm::dvec2(16.0));
 
     Keys();
     Pointer(context);
     PanelRequests requests;
-    if (!bare_) {
+    if (chrome_ != Chrome::kNone) {
       DrawOverlay(context, glm::vec2(origin_), glm::vec2(size_));
       if (session_.inspected && session_.show_lobe) DrawLobe(context, glm::vec2(origin_ + size_));
+    }
+    if (all) {
       DrawBar(context, ImGui::GetIO().DisplaySize.x, requests);
       DrawColumn(context, {static_cast<float>(size_.x), bar}, {column, static_cast<float>(size_.y)}, requests);
-      if (help_) DrawHelp(context, glm::vec2(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y));
     }
+    if (help_) DrawHelp(context, glm::vec2(ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y));
     if (requests.toggle_help) help_ = !help_;
     if (requests.save) Save();
-    if (requests.screenshot) wanted_shot_ = Numbered(".png");
+    if (requests.screenshot) asked_shot_ = Numbered(".png");
     if (requests.turntable) StartTurntable(session_.scene.name + "_turntable");
     if (requests.snapshot) KeepSnapshot();
     if (requests.copy != nullptr) CopyCase(*requests.copy);
-    if (requests.exr) wanted_shot_ = Numbered(".exr");
+    if (requests.exr) asked_shot_ = Numbered(".exr");
+    for (const std::string& file : std::exchange(inputs.dropped, {})) Drop(file);
     if (!ImGui::IsAnyItemActive() && !gizmo_.dragging()) session_.Commit();
     ImGui::Render();
 
@@ -447,7 +474,7 @@ class View {
     }
     turntable_ = folder;
     turn_ = 0;
-    bare_ = true;
+    if (chrome_ == Chrome::kAll) chrome_ = Chrome::kNone;
   }
 
   // One step of it: the picture as it is seen, then the camera goes on, once round.
@@ -459,7 +486,7 @@ class View {
     redraw_ = 2;
     if (++turn_ < count) return;
     turntable_.clear();
-    bare_ = options_.bare;
+    if (!options_.bare && !options_.captions) chrome_ = Chrome::kAll;
     done_ = !options_.turntable.empty();
   }
 
@@ -475,6 +502,7 @@ class View {
         display_.SetPicture(i, shaded->image, shaded->emission, session_.lobe);
       }
     }
+    BakeView();
     DisplaySettings settings = session_.display;
     settings.exposure = session_.scene.exposure + session_.exposure;
     const glm::dvec2 scale(ImGui::GetIO().DisplayFramebufferScale.x, ImGui::GetIO().DisplayFramebufferScale.y);
@@ -559,7 +587,7 @@ class View {
     const bool alt = io.KeyAlt;
     const bool maya = session_.navigation == Navigation::kMaya;
     const bool near_wipe = session_.layout == Layout::kWipe && std::abs(at.x - session_.wipe * size_.x) < 0.5 * unit_;
-    const bool on_gizmo = !bare_ && session_.layout != Layout::kGrid && drag_ != Drag::kOrbit && drag_ != Drag::kPan &&
+    const bool on_gizmo = chrome_ == Chrome::kAll && session_.layout != Layout::kGrid && drag_ != Drag::kOrbit && drag_ != Drag::kPan &&
                           gizmo_.Run(session_, origin_, size_, at, free && !near_wipe && !alt);
     context.over_wipe = drag_ == Drag::kWipe || (free && near_wipe && !gizmo_.dragging());
     if (context.over_wipe) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
@@ -643,6 +671,10 @@ class View {
       case GLFW_KEY_C:
         if (session_.inspected && inspection_.surface && !inspection_.lights.empty()) CopyCase(inspection_.lights.front());
         return;
+      case GLFW_KEY_EQUAL:
+      case GLFW_KEY_KP_ADD: return Type(type_ + 10);
+      case GLFW_KEY_MINUS:
+      case GLFW_KEY_KP_SUBTRACT: return Type(type_ - 10);
       case GLFW_KEY_Q: return glfwSetWindowShouldClose(window_.window, GLFW_TRUE);
       default: return;
     }
@@ -652,9 +684,9 @@ class View {
     if (key >= GLFW_KEY_1 && key <= GLFW_KEY_5) session_.layout = static_cast<Layout>(key - GLFW_KEY_1);
     switch (key) {
       case GLFW_KEY_ESCAPE: help_ = false, session_.light = -1; break;
-      case GLFW_KEY_TAB: bare_ = !bare_; break;
-      case GLFW_KEY_F12: wanted_shot_ = Numbered(".png"); break;
-      case GLFW_KEY_F11: wanted_shot_ = Numbered(".exr"); break;
+      case GLFW_KEY_TAB: chrome_ = static_cast<Chrome>((static_cast<int>(chrome_) + 1) % 3); break;
+      case GLFW_KEY_F12: asked_shot_ = Numbered(".png"); break;
+      case GLFW_KEY_F11: asked_shot_ = Numbered(".exr"); break;
       case GLFW_KEY_HOME: session_.exposure = 0.0; break;
       case GLFW_KEY_G: session_.gizmo = GizmoMode::kMove; break;
       case GLFW_KEY_R: session_.gizmo = GizmoMode::kTurn; break;
@@ -689,6 +721,52 @@ class View {
     trouble_ = trouble;
     said_ = Clock::now();
     redraw_ = std::max(redraw_, 2);
+  }
+
+  void Drop(const fs::path& file) {
+    const glm::dvec2 at = inputs.cursor - origin_;
+    const auto [pane_origin, pane_size] = Pane(at);
+    const auto pixel = PixelAt((at - pane_origin) / pane_size);
+    const int kind = pixel ? static_cast<int>(std::abs(state_.pixels->position[*pixel].w)) : 1;
+    try {
+      if (kind == 0) {
+        session_.FillFrom(file);
+        return Say(fmt::format("the sky is the mean of {}", file.filename().string()));
+      }
+      const int light = kind >= 2 ? kind - 2 : session_.light;
+      if (light < 0) throw InputError(fmt::format("{}: dropped on no light; expected one under it, or one that is selected", file.string()));
+      session_.ShowImage(static_cast<std::size_t>(light), file);
+      session_.light = light;
+      Say(fmt::format("the light '{}' shows {}", session_.scene.lights[static_cast<std::size_t>(light)].name, file.filename().string()));
+    } catch (const std::exception& error) {
+      Say(error.what(), true);
+    }
+  }
+
+  // What is broken is said once; the transforms that are built in remain.
+  void ReadOcio() {
+    try {
+      ocio_ = OcioConfig::FromEnvironment();
+      if (!ocio_ && options_.transform == "ocio") throw InputError("--transform ocio: no configuration; expected one that the environment variable OCIO names");
+      if (ocio_ && options_.transform == "ocio") {
+        session_.display.transform = ViewTransform::kOcio;
+        session_.ocio_view = ocio_->views().front();
+      }
+    } catch (const InputError& error) {
+      if (options_.frames > 0 && options_.transform == "ocio") throw;
+      Say(error.what(), true);
+    }
+  }
+
+  void BakeView() {
+    if (session_.display.transform != ViewTransform::kOcio || session_.ocio_view == baked_view_) return;
+    try {
+      display_.SetViewTable(ocio_->Bake(session_.ocio_view));
+      baked_view_ = session_.ocio_view;
+    } catch (const std::exception& error) {
+      session_.display.transform = ViewTransform::kSrgb;
+      Say(error.what(), true);
+    }
   }
 
   void Save() {
@@ -758,11 +836,19 @@ class View {
     if (!state_.error.empty()) throw InputError(state_.error);
   }
 
-  // Type at the monitor's scale.
+  void Type(int percent) {
+    type_ = std::clamp(percent, kMinType, kMaxType);
+    other_type_ = true;
+  }
+
+  // Type at the monitor's scale, as it says or, where it says nothing, by its height.
   void Scale() {
     float x = 1.0f, y = 1.0f;
     glfwGetWindowContentScale(window_.window, &x, &y);
-    unit_ = std::round(16.0f * std::clamp(std::max(x, y), 0.5f, 4.0f));
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    const float by_height = mode == nullptr ? 1.0f : static_cast<float>(mode->height) / kPlainHeight;
+    unit_ = std::round(0.16f * static_cast<float>(type_) * std::clamp(std::max({x, y, by_height}), 0.5f, 4.0f));
     widgets::ApplyStyle(unit_);
   }
 
@@ -774,6 +860,8 @@ class View {
   Watch watch_;
   Gizmo gizmo_;
   ViewState state_;
+  std::unique_ptr<const OcioConfig> ocio_;  // null: none
+  std::string baked_view_;
   std::optional<Inspector> inspector_;  // once a pixel was asked for
   Inspection inspection_;
   std::optional<CycleCounter> counter_;  // once cycles were asked for
@@ -794,14 +882,15 @@ class View {
   Drag drag_ = Drag::kNone;
   glm::dvec2 pressed_{0.0}, dragged_{0.0};
   std::string message_, told_;
-  fs::path wanted_shot_, turntable_;
+  fs::path asked_shot_, wanted_shot_, turntable_;
   std::string title_;
   std::shared_ptr<const RadianceImage> floor_of_;
   double floor_ = 0.0;
   float unit_ = 16.0f;
   int redraw_ = 3, drawn_ = 0, turn_ = 0;
-  bool was_measuring_ = false;
-  bool bare_ = false, help_ = false, trouble_ = false, done_ = false;
+  int type_ = 100;
+  Chrome chrome_ = Chrome::kAll;
+  bool was_measuring_ = false, other_type_ = false, help_ = false, trouble_ = false, done_ = false;
 };
 
 void WatchInputs(GLFWwindow* window) {
@@ -817,6 +906,10 @@ void WatchInputs(GLFWwindow* window) {
   glfwSetScrollCallback(window, [](GLFWwindow*, double, double) { Noticed(); });
   glfwSetKeyCallback(window, [](GLFWwindow*, int key, int, int action, int modifiers) {
     if (action == GLFW_PRESS) inputs.keys.push_back({key, modifiers});
+    Noticed();
+  });
+  glfwSetDropCallback(window, [](GLFWwindow*, int count, const char** files) {
+    inputs.dropped.insert(inputs.dropped.end(), files, files + count);
     Noticed();
   });
   glfwSetCharCallback(window, [](GLFWwindow*, unsigned) { Noticed(); });
@@ -851,22 +944,36 @@ void ChoosePanes(const ViewOptions& options, Session& session) {
 
 }  // namespace
 
-void RunView(const ViewOptions& options) {
+void RunView(const ViewOptions& given) {
+  Remembered remembered = Remembered::Load();
+  ViewOptions options = given;
+  if (options.scene.empty()) options.scene = remembered.scene;
+  if (options.scene.empty()) throw InputError("no scene; expected a built-in name, a scene file or a mesh, since none was open before");
   Opened opened = OpenScene(options.scene, options.cache);
   const GlfwLibrary glfw;
-  Remembered remembered = Remembered::Load();
   Worker worker(options.context, options.shader_folder, [] { glfwPostEmptyEvent(); });
   Session session(std::move(opened));
   session.light = 0;  // its handles say what can be done; Escape puts them away
   session.navigation = static_cast<Navigation>(remembered.navigation);
   ChoosePanes(options, session);
+  if (options.layout.empty() && options.techniques.empty() && remembered.layout >= 0) session.layout = static_cast<Layout>(remembered.layout);
+  const std::string transforms[] = {"srgb", "aces", "neutral", "agx"};
+  const auto transform = std::ranges::find(transforms, options.transform);
+  if (transform != std::end(transforms)) session.display.transform = static_cast<ViewTransform>(transform - transforms);
+  session.false_color = options.transform == "false";
   GlfwWindow window(options.size.value_or(remembered.size), session.scene.name + " … – AreaLab");
   WatchInputs(window.window);
   const ImGuiLibrary imgui(window.window);
-  View(options, window, worker, session).Run();
+  View view(options, window, worker, session, remembered.type);
+  view.Run();
   session.Autosave();  // what is unsaved now is offered at the next start
+  if (options.frames > 0) return;  // a script's window is no habit of its user
   if (!options.size) glfwGetWindowSize(window.window, &remembered.size.x, &remembered.size.y);
   remembered.navigation = static_cast<int>(session.navigation);
+  remembered.layout = static_cast<int>(session.layout);
+  remembered.type = view.type();
+  std::error_code error;
+  remembered.scene = fs::exists(options.scene, error) ? fs::absolute(options.scene, error).string() : options.scene;
   remembered.Save();
 }
 

@@ -12,14 +12,16 @@
 namespace arealab {
 
 struct ViewOptions {
-  std::string scene;                   // a built-in name, a scene file, or a mesh file alone
+  std::string scene;                   // a built-in name, a scene file, or a mesh file alone; empty: the last one
   std::optional<ContextKind> context;  // that shades; the window's own is the display's
   std::filesystem::path shader_folder;
   std::filesystem::path cache;          // folder of apertures already baked
   std::optional<glm::ivec2> size;       // px of the window; else as it was last, else 1280×720
   std::vector<std::string> techniques;  // A, B, C, D
   std::string layout;                   // "single", "wipe", "difference", "flicker", "grid"; empty: by the techniques
+  std::string transform;                // "srgb", "aces", "neutral", "agx", "false", "ocio" (its first view); empty: sRGB
   bool bare = false;                    // the picture alone
+  bool captions = false;                // with its captions
   int frames = 0;                       // draws this many once the picture is whole, then leaves; 0: until closed
   std::filesystem::path screenshot;     // written before it leaves: .png as seen, .exr pane A's radiance
   std::filesystem::path turntable;      // with frames: a folder for so many pictures once round the target, 0001.png …

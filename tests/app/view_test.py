@@ -4,12 +4,15 @@
 usage: view_test.py AREALAB FOLDER
 FOLDER keeps the screenshots of the last run.
 """
+import ctypes
 import json
+import math
 import os
 import shutil
 import struct
 import subprocess
 import sys
+import threading
 import time
 import tomllib
 import unittest
@@ -71,6 +74,23 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   %s
 }
 """
+# A view that is a power of 1/2.2, and the light itself.
+OCIO = """ocio_profile_version: 1
+search_path: .
+roles: {default: raw, scene_linear: lin_rec709}
+displays:
+  sRGB:
+    - !<View> {name: Film, colorspace: film}
+    - !<View> {name: Raw, colorspace: raw}
+active_displays: [sRGB]
+active_views: [Film, Raw]
+colorspaces:
+  - !<ColorSpace> {name: raw, isdata: true}
+  - !<ColorSpace> {name: lin_rec709}
+  - !<ColorSpace>
+    name: film
+    from_reference: !<ExponentTransform> {value: [0.4545454, 0.4545454, 0.4545454, 1]}
+"""
 WHOLE = "return Radiance(vec3(knob_level), vec3(0.0));"
 
 
@@ -131,13 +151,13 @@ def arealab(*arguments, **extra):
 class Window:
     """A running `arealab view`, and the hands that use it."""
 
-    def __init__(self, name, *arguments):
+    def __init__(self, name, *arguments, **extra):
         self.log_file = FOLDER / f"{name}.log"
         self.shots = 0
         self.name = name
         with open(self.log_file, "w") as log:
             self.process = subprocess.Popen([PROGRAM, "view", *map(str, arguments), "--size", "{}x{}".format(*WINDOW), "--context", "osmesa", "--json"],
-                                            stdout=subprocess.PIPE, stderr=log, text=True, cwd=FOLDER, env=environment())
+                                            stdout=subprocess.PIPE, stderr=log, text=True, cwd=FOLDER, env=environment() | extra)
         self.do("search", "--sync", "--name", "AreaLab")
 
     def do(self, *arguments):
@@ -170,10 +190,14 @@ class Window:
         shutil.move(file, kept)
         return kept.read_bytes()
 
-    def settled(self):
-        """The window once its picture is whole, which the title says."""
-        time.sleep(0.25)  # for what was done to arrive
+    def rest(self):
+        """Until its picture is whole, which the title says."""
+        time.sleep(0.2)  # for what was done to arrive
         until(lambda: "…" not in self.do("search", "--name", "AreaLab", "getwindowname"), "whole picture", 30.0)
+
+    def settled(self):
+        """The window once its picture is whole."""
+        self.rest()
         return self.shot()
 
     def picture(self):
@@ -193,6 +217,52 @@ class Window:
         # The server takes the window down after the process: the next one must not be mistaken for it.
         until(lambda: subprocess.run(["xdotool", "search", "--name", "AreaLab"], env=environment(), capture_output=True).stdout == b"",
               "window gone")
+
+
+class Drop:
+    """Files that a hand drops on a window, by the protocol of file managers [XDND 5], which xdotool does not speak."""
+
+    CLIENT, REQUEST, NOTIFY = 33, 30, 31  # ClientMessage, SelectionRequest, SelectionNotify
+
+    def __init__(self, files, window, x, y):
+        x11 = ctypes.CDLL("libX11.so.6")
+        x11.XOpenDisplay.restype = ctypes.c_void_p
+        for name in ("XDefaultRootWindow", "XCreateSimpleWindow", "XInternAtom"):
+            getattr(x11, name).restype = ctypes.c_ulong
+        long, pointer = ctypes.c_ulong, ctypes.c_void_p
+        display = pointer(x11.XOpenDisplay(DISPLAY.encode()))
+        source = long(x11.XCreateSimpleWindow(display, long(x11.XDefaultRootWindow(display)), 0, 0, 1, 1, 0, long(0), long(0)))
+        atom = lambda name: x11.XInternAtom(display, name.encode(), 0)
+        uris = "".join(Path(file).as_uri() + "\r\n" for file in files).encode()
+
+        def send(to, kind, *data, message=None):
+            event = (long * 24)()
+            event[0] = kind
+            fields = [to, message, 32] if message else []
+            for i, value in enumerate(fields + list(data)):
+                event[4 + i] = value
+            x11.XSendEvent(display, long(to), 0, long(0), ctypes.byref(event))
+            x11.XFlush(display)
+
+        def tell(name, *data):
+            send(window, self.CLIENT, source.value, *data, message=atom(name))
+
+        x11.XSetSelectionOwner(display, long(atom("XdndSelection")), source, long(0))
+        tell("XdndEnter", 5 << 24, atom("text/uri-list"), 0, 0)
+        tell("XdndPosition", 0, x << 16 | y, 0, atom("XdndActionCopy"))
+        tell("XdndDrop", 0, 0, 0, 0)
+        event = (long * 24)()
+        finished = atom("XdndFinished")
+        while True:
+            x11.XNextEvent(display, ctypes.byref(event))
+            kind = event[0] & 0xffffffff
+            if kind == self.REQUEST:
+                requestor, selection, target, prop, when = event[5:10]
+                x11.XChangeProperty(display, long(requestor), long(prop), long(target), 8, 0, uris, len(uris))
+                send(requestor, self.NOTIFY, requestor, selection, target, prop, when)
+            elif kind == self.CLIENT and event[5] == finished:
+                break
+        x11.XCloseDisplay(display)
 
 
 class ViewTest(unittest.TestCase):
@@ -261,11 +331,11 @@ class ViewTest(unittest.TestCase):
 
     def test_a_pixel_is_copied_as_a_test_case(self):
         window = self.window(self.scene(), "--technique", "ltc")
-        window.settled()
+        window.rest()
         window.do("mousemove", WIDTH // 2 - 60, 380, "keydown", "shift", "click", "1", "keyup", "shift")
-        window.settled()
+        window.rest()
         window.do("mousemove", WIDTH + 245, 67, "click", "1", "mousemove", 100, 500)  # the tab of the pixel
-        window.settled()
+        window.rest()
         window.do("key", "ctrl+c")
         until(lambda: "copied for" in window.log(), "copy")
         case = window.log().rsplit("--case`: ", 1)[1].strip()
@@ -280,14 +350,145 @@ class ViewTest(unittest.TestCase):
         self.assertLess(abs(sum(pixel["truth"]) / sum(pixel["values"]["reference"]["double"]) - 1.0), 1e-3)
         self.assertGreater(len(pixel["values"]), 6)
 
+    def test_turn_scale_focus_cameras_images(self):
+        file = self.scene()
+        window = self.window(file, "--technique", "ltc")
+        window.rest()
+
+        def saved():
+            count = window.log().count("saved ")
+            window.do("key", "ctrl+s")
+            until(lambda: window.log().count("saved ") > count, "save")
+            return tomllib.loads(file.read_text())
+
+        window.do("key", "r")  # the ring about the normal, a quarter turn's half
+        window.drag((LIGHT[0] + 59, LIGHT[1] - 59), (LIGHT[0] + 84, LIGHT[1]))
+        window.rest()
+        light = saved()["light"][0]
+        self.assertEqual(light["normal"], [0.0, -1.0, 0.0])
+        self.assertLess(abs(abs(light["up"][0]) - 0.7071), 0.04)
+        window.do("key", "ctrl+z", "key", "s")
+        window.drag((LIGHT[0] + 82, LIGHT[1]), (LIGHT[0] + 123, LIGHT[1]))
+        window.rest()
+        light = saved()["light"][0]
+        self.assertEqual(light["up"], [0.0, 0.0, 1.0])  # undone
+        self.assertLess(abs(light["size"][0] - 3.0), 0.2)
+        self.assertEqual(light["size"][1], 0.9)
+        window.do("key", "ctrl+z")
+        window.rest()
+        window.do("mousemove", 200, 450, "key", "f")
+        window.rest()
+        window.do("mousemove", WIDTH + 302, 67, "click", "1")  # the tab of the view
+        window.rest()
+        window.do("mousemove", WIDTH + 163, 230, "click", "1")  # its camera is the scene's
+        time.sleep(0.3)
+        camera = saved()["camera"]
+        self.assertEqual(camera["position"], [0.0, -4.0, 1.9])
+        self.assertLess(abs(camera["target"][2]), 1e-5)
+        self.assertLess(camera["target"][0], -0.3)
+        window.do("mousemove", WIDTH + 163, 200, "click", "1", "mousemove", 100, 500)  # remembered
+        before = window.picture()
+        window.drag((100, 480), (200, 460))
+        until(lambda: window.picture() != before, "another view")
+        window.do("mousemove", WIDTH + 163, 200, "click", "1", "mousemove", 100, 500)
+        until(lambda: window.picture() == before, "the view that was remembered")
+        self.assertNotIn("sky", saved())
+
+        image = FOLDER / "stripes.ppm"
+        image.write_text("P3 4 1 255\n255 0 0  0 255 0  0 0 255  255 255 255\n")
+        target = int(window.do("search", "--name", "AreaLab").split()[0])
+        place = [int(line.split("=")[1]) for line in window.do("getwindowgeometry", "--shell", target).splitlines() if line[:2] in ("X=", "Y=")]
+        window.do("key", "Home", "mousemove", WIDTH + 163, 200)
+        before = read_png(window.settled())[2]
+        lit = [(x, y) for y in range(BAR + 60, 300, 4) for x in range(60, WIDTH - 60, 4) if before[y][3 * x:3 * x + 3] == b"\xff\xff\xff"]
+        x, y = lit[len(lit) // 2]
+        Drop([image], target, place[0] + x, place[1] + y)
+        until(lambda: "shows stripes.ppm" in window.log(), "image on the light")
+        self.assertEqual(saved()["light"][0]["texture"], "stripes.ppm")
+        window.do("key", "ctrl+z")
+        window.rest()
+        self.assertNotIn("texture", saved()["light"][0])
+        Drop([image], target, place[0] + 30, place[1] + BAR + 60)
+        until(lambda: "the mean of stripes.ppm" in window.log(), "sky")
+        sky = saved()["sky"]["radiance"]
+        for channel in sky:
+            self.assertLess(abs(channel - 0.5), 1e-5)
+        outside = FOLDER.parent / "outside.ppm"
+        outside.write_text(image.read_text())
+        Drop([outside], target, place[0] + x, place[1] + y)
+        until(lambda: "outside.ppm: outside " in window.log(), "refusal")
+        outside.unlink()
+        window.leave()
+
+    def test_view_transforms(self):
+        """The menu, each entry once, on a surface of one known radiance."""
+        techniques = FOLDER / "flat" / "techniques"
+        techniques.mkdir(parents=True, exist_ok=True)
+        (techniques / "mine.glsl").write_text(TECHNIQUE % (0.25, WHOLE))
+        config = FOLDER / "config.ocio"
+        config.write_text(OCIO)
+        file = FOLDER / "panel.toml"
+        file.write_text(SCENE)
+        window = Window("test_view_transforms", file, "--glsl", techniques.parent, "--technique", "mine", OCIO=str(config))
+        self.addCleanup(window.end)
+        window.rest()
+        srgb = lambda v: 1.055 * v ** (1 / 2.4) - 0.055
+        v = 0.25
+        aces = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081)  # its matrices' rows sum to 1
+        log = (math.log2(v) + 12.47393) / (4.026069 + 12.47393)
+        agx = 15.5 * log ** 6 - 40.14 * log ** 5 + 31.96 * log ** 4 - 6.868 * log ** 3 + 0.4298 * log ** 2 + 0.1191 * log - 0.00232
+        expected = [("sRGB", srgb(v)), ("ACES", srgb(aces)), ("Neutral", srgb(v - 0.04)), ("AgX", agx), ("OCIO", v ** (1 / 2.2)), ("raw", v)]
+        for i, (name, code) in enumerate(expected):
+            window.do("mousemove", 770, 23, "click", "1")
+            time.sleep(0.3)
+            window.do("mousemove", 770, 50 + 21 * i, "click", "1", "mousemove", 100, 500)
+            rows = read_png(window.settled())[2]
+            self.assertLessEqual(max(abs(c - 255 * code) for c in rows[500][3 * 300:3 * 301]), 1.3, name)
+        window.leave()
+        broken = FOLDER / "broken.ocio"
+        broken.write_text("not: [a config")
+        result = arealab("view", file, "--technique", "point", "--size", "320x240", "--frames", 1, OCIO=str(broken))
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, r"^\S*broken.ocio: .*; expected an OpenColorIO configuration in OCIO, or none\n$")
+
+    def test_edits_and_reloads_keep_memory_flat(self):
+        """AREALAB_EDITS of them, a thousand for the figure of the README."""
+        edits = int(os.environ.get("AREALAB_EDITS", "60"))
+        techniques = FOLDER / "reloads" / "techniques"
+        techniques.mkdir(parents=True, exist_ok=True)
+        shader = techniques / "mine.glsl"
+        shader.write_text(TECHNIQUE % (0.2, WHOLE))
+        window = self.window(self.scene(), "--glsl", techniques.parent, "--technique", "mine")
+        window.rest()
+        memory = lambda: int(Path(f"/proc/{window.process.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+        def work(count):
+            moves = []
+            for i in range(count * 4 // 5):
+                moves += ["mousemove", str(LIGHT[0] + 70 + (i % 40 if i % 80 < 40 else 40 - i % 40)), str(LIGHT[1]), "sleep", "0.02"]
+            hand = threading.Thread(target=window.do, args=("mousemove", LIGHT[0] + 70, LIGHT[1], "mousedown", "1", *moves, "mouseup", "1"))
+            hand.start()
+            for i in range(count // 5):
+                shader.write_text(TECHNIQUE % (0.2 + 0.6 * i / count, WHOLE))
+                time.sleep(0.22)
+            hand.join()
+            window.do("key", "ctrl+z")
+            window.rest()
+
+        work(30)
+        before = memory()
+        work(edits)
+        self.assertLess(memory() - before, 80.0)  # a few pictures, which come and go; an edit's alone are 25
+        window.leave()
+
     def test_move_a_light_type_a_roughness_undo_save_reopen(self):
         file = self.scene()
         window = self.window(file, "--technique", "ltc")
-        window.settled()
+        window.rest()
         window.do("mousemove", LIGHT[0] + 40, LIGHT[1] - 20, "click", "1")
         time.sleep(0.5)
         window.drag((LIGHT[0] + 70, LIGHT[1]), (LIGHT[0] + 130, LIGHT[1]))  # by the arrow along x
-        window.settled()
+        window.rest()
         window.do("key", "ctrl+s")
         until(lambda: "saved" in window.log(), "save")
         moved = tomllib.loads(file.read_text())["light"][0]["position"]
@@ -302,13 +503,13 @@ class ViewTest(unittest.TestCase):
         window.do("key", "ctrl+a", "type", "0.25")
         time.sleep(0.3)
         window.do("key", "Return")
-        window.settled()
+        window.rest()
         window.do("key", "ctrl+s")
         until(lambda: "roughness = 0.25  # as sanded" in file.read_text(), "saved roughness")
         window.do("key", "ctrl+z")
         time.sleep(0.3)
         window.do("key", "ctrl+z")
-        window.settled()
+        window.rest()
         window.do("key", "ctrl+s")
         until(lambda: file.read_text() == SCENE, "file as it was before the edits")
 
@@ -320,7 +521,7 @@ class ViewTest(unittest.TestCase):
         window.end()
         self.assertEqual(file.read_text(), SCENE)
         window = self.window(file, "--technique", "ltc")
-        window.settled()
+        window.rest()
         window.do("key", "ctrl+r")
         until(lambda: "brought back" in window.log(), "offer taken")
         window.do("key", "ctrl+s")
