@@ -2,10 +2,6 @@
 // found so far.
 #pragma once
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -17,6 +13,9 @@
 #include <utility>
 
 namespace arealab {
+
+// Lets other threads go first, by so many steps of niceness; threads that this one starts inherit it.
+void Yield(int steps);
 
 template <typename Job, typename Found>
 class Background {
@@ -65,7 +64,7 @@ class Background {
 
  private:
   void Run() {
-    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
+    Yield(10);
     Work work;
     while (true) {
       Job job;

@@ -34,7 +34,9 @@ class Display {
  public:
   explicit Display(const GladGLContext& gl);
 
-  // Slot 0 … 3. Uploads what is not there yet.
+  static constexpr int kSlots = 16;
+
+  // Slot 0 … kSlots − 1. Uploads what is not there yet.
   void SetPicture(int slot, const std::shared_ptr<const RadianceImage>& image,
                   const std::shared_ptr<const std::vector<glm::vec3>>& emission, Lobe lobe);
   // What kOcio shows: kViewTableSize³ codes (app/view/ocio.h).
@@ -60,7 +62,7 @@ class Display {
   std::map<std::tuple<PictureKind, ViewTransform, bool>, GlObject> programs_;
   GlObject vertex_array_;
   GlObject signed_scale_, magnitude_scale_, view_table_;
-  std::array<Slot, 4> slots_;
+  std::array<Slot, kSlots> slots_;
   std::vector<glm::vec4> texels_;
 };
 

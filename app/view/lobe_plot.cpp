@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/view/panels.h"
@@ -67,14 +68,15 @@ void FromAbove(const Disc& disc, const LobePicture& picture, float line) {
 
 }  // namespace
 
-void DrawLobe(PanelContext& context, glm::vec2 corner) {
+void DrawLobe(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
   const LobePicture& picture = context.inspection.picture;
   if (!context.inspection.surface || !(picture.peak > 0.0)) return;
   const float u = context.unit, line = u / 16.0f, radius = 5.2f * u;
   const float width = 5.0f * radius, height = 2.0f * radius + 5.4f * u;
-  // Above a map's legend where there is one.
+  // Above a map's legend and the snapshots where there are any.
   const bool legend = context.session.layout == Layout::kDifference || context.session.false_color;
-  ImGui::SetNextWindowPos({corner.x - width - u, corner.y - height - (legend ? 5.0f : 1.0f) * u});
+  const float foot = std::max(legend ? 4.0f * u : 0.0f, StripHeight(context, size)) + u;
+  ImGui::SetNextWindowPos({origin.x + size.x - width - u, std::max(origin.y, origin.y + size.y - height - foot)});
   ImGui::SetNextWindowSize({width, height});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.35f * u);
   ImGui::SetNextWindowBgAlpha(0.88f);
@@ -86,10 +88,10 @@ void DrawLobe(PanelContext& context, glm::vec2 corner) {
                "a half, a tenth and a hundredth of the BRDF's peak; there a light's share of the disc is its form factor.");
   ImGui::SameLine();
   widgets::Dim(fmt::format("peak {:.3g} 1/sr", picture.peak));
-  const ImVec2 origin = ImGui::GetWindowPos();
-  const float middle = origin.y + 2.6f * u + radius;
-  const Disc side{draw, {origin.x + 1.22f * radius, middle + 0.42f * radius}, 1.08f * radius}, above{draw, {origin.x + 3.75f * radius, middle}, radius};
-  draw.PushClipRect(origin, {origin.x + width, origin.y + height});
+  const ImVec2 panel = ImGui::GetWindowPos();
+  const float middle = panel.y + 2.6f * u + radius;
+  const Disc side{draw, {panel.x + 1.22f * radius, middle + 0.42f * radius}, 1.08f * radius}, above{draw, {panel.x + 3.75f * radius, middle}, radius};
+  draw.PushClipRect(panel, {panel.x + width, panel.y + height});
   FromTheSide(side, picture, line);
   FromAbove(above, picture, line);
   side.Text({0.0f, -0.32f}, "plane of incidence", 0.5f);

@@ -46,9 +46,8 @@ void VariantCombo(PanelContext& context, int pane, float width) {
   const Snapshot* snapshot = context.session.SnapshotOf(shown);
   const std::string label = snapshot != nullptr ? snapshot->label : shown.name;
   if (ImGui::BeginCombo(fmt::format("##pane{}", pane).c_str(), label.c_str(), ImGuiComboFlags_HeightLargest)) {
-    for (std::size_t i = 0; i < context.session.snapshots.size(); ++i) {
-      const std::string name = fmt::format("#{}", i + 1);
-      if (ImGui::Selectable(context.session.snapshots[i].label.c_str(), name == shown.name)) shown = {name, {}};
+    for (const Snapshot& kept : context.session.snapshots) {
+      if (ImGui::Selectable(kept.label.c_str(), kept.name == shown.name)) shown = {kept.name, {}};
       Tip("A picture kept earlier (K).");
     }
     if (ImGui::Selectable(kTruth, shown.name == kTruth)) shown = {kTruth, {}};
@@ -471,7 +470,7 @@ void PixelLights(const PanelContext& context, PanelRequests& requests) {
     ImGui::SameLine(6.0f * context.unit);
     Dim(light.clipping);
     Tip("What of the light lies above the surface's plane.");
-    ImGui::SameLine(ImGui::GetWindowContentRegionWidth() - 2.6f * context.unit);
+    ImGui::SameLine(ImGui::GetWindowContentRegionWidth() - 3.0f * context.unit);
     if (ImGui::Button("Copy", {-1.0f, 0.0f})) requests.copy = &light;
     Tip("Ctrl + C. Copies as test case the line that `arealab stress --case` takes: this point under this light alone, with white albedo (diffuse is the "
         "picture's over the albedo), F0 and radiance by their luminance, GGX, without texture, apertures and sky.");
@@ -618,7 +617,7 @@ void ViewTab(PanelContext& context, PanelRequests& requests) {
   if (ImGui::Button("Screenshot PNG", {-1.0f, 0.0f})) requests.screenshot = true;
   Tip("F12: the window as it is seen, into the current folder.");
   if (ImGui::Button("Keep a snapshot", {-1.0f, 0.0f})) requests.snapshot = true;
-  Tip("K: keeps pane A's picture; the panes' menus show it, to compare it with what comes after.");
+  Tip("K: keeps pane A's picture in the strip at the picture's foot, to compare it with what comes after.");
   if (ImGui::Button("Turntable", {-1.0f, 0.0f})) requests.turntable = true;
   Tip("72 numbered PNGs once round the target, into a folder beside the screenshots.");
   if (ImGui::Button("Linear EXR", {-1.0f, 0.0f})) requests.exr = true;
@@ -696,6 +695,47 @@ glm::vec4 GridCell(int i, int count, glm::vec2 size) {
   return {static_cast<float>(i % 2) * (cell.x + gap), static_cast<float>(i / 2) * (cell.y + gap), cell.x, cell.y};
 }
 
+glm::vec4 StripCell(std::size_t i, glm::vec2 size, float unit) {
+  const float width = std::min(8.0f * unit, (size.x - 2.0f * unit) / static_cast<float>(kMostSnapshots) - 0.5f * unit), height = std::round(width * size.y / size.x);
+  return {std::round(unit + static_cast<float>(i) * (width + 0.5f * unit)), std::round(size.y - unit - height), std::round(width), height};
+}
+
+float StripHeight(const PanelContext& context, glm::vec2 size) {
+  return context.session.snapshots.empty() ? 0.0f : StripCell(0, size, context.unit).w + 2.2f * context.unit;
+}
+
+void DrawStrip(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
+  Session& session = context.session;
+  const float u = context.unit;
+  const std::size_t pane = session.layout == Layout::kSingle ? 0 : 1;
+  std::string gone;
+  for (std::size_t i = 0; i < session.snapshots.size(); ++i) {
+    const Snapshot& kept = session.snapshots[i];
+    const glm::vec4 cell = StripCell(i, size, u) + glm::vec4(origin, 0.0f, 0.0f);
+    ImGui::SetNextWindowPos({cell.x, cell.y});
+    ImGui::SetNextWindowSize({cell.z, cell.w});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
+    ImGui::Begin(kept.name.c_str(), nullptr, kFixedWindow | ImGuiWindowFlags_NoBackground);
+    ImGui::PopStyleVar();
+    if (ImGui::InvisibleButton("##show", {cell.z, cell.w})) {
+      // Again: back to what it was of.
+      session.panes[pane] = session.panes[pane].name == kept.name ? kept.picture.variant : ShownVariant{kept.name, {}};
+    }
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) gone = kept.name;
+    const bool shown = session.panes[pane].name == kept.name, hovered = ImGui::IsItemHovered();
+    Tip(fmt::format("{}: click to show it in pane {}, right click to throw it away.", kept.label, kPaneLetters[pane]));
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.AddRect({cell.x, cell.y}, {cell.x + cell.z, cell.y + cell.w}, shown ? IM_COL32(240, 176, 92, 255) : hovered ? IM_COL32(255, 255, 255, 230) : IM_COL32(255, 255, 255, 90),
+                 0.0f, 0, shown ? 2.0f : 1.0f);
+    const std::string label = Shortened(kept.label, cell.z - 0.6f * u);
+    const ImVec2 extent = ImGui::CalcTextSize(label.c_str());
+    draw.AddRectFilled({cell.x, cell.y}, {cell.x + extent.x + 0.6f * u, cell.y + extent.y + 0.2f * u}, IM_COL32(18, 19, 22, 190));
+    draw.AddText({cell.x + 0.3f * u, cell.y + 0.1f * u}, IM_COL32(240, 240, 242, 255), label.c_str());
+    ImGui::End();
+  }
+  if (!gone.empty()) session.Drop(gone);
+}
+
 float BarHeight(const PanelContext& context) { return std::round(2.9f * context.unit); }
 float ColumnWidth(const PanelContext& context) { return std::round(21.5f * context.unit); }
 
@@ -755,7 +795,7 @@ void DrawColumn(PanelContext& context, glm::vec2 position, glm::vec2 size, Panel
   ImGui::SetNextWindowSize({size.x, size.y});
   ImGui::Begin("##column", nullptr, kFixedWindow);
   const float foot = 3.4f * u;
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0.38f * u, 0.3f * u});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0.3f * u, 0.3f * u});
   const bool tabs = ImGui::BeginTabBar("##tabs");
   ImGui::PopStyleVar();
   if (tabs) {
@@ -856,7 +896,7 @@ void DrawOverlay(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
     draw.AddCircle(at, 0.45f * u, IM_COL32(255, 255, 255, 230), 0, 1.5f);
   }
   // What went wrong stays until it is mended, at the picture's foot.
-  float y = origin.y + size.y - 0.7f * u;
+  float y = origin.y + size.y - 0.7f * u - StripHeight(context, size);
   const auto lines = [&](const std::string& text, ImU32 color) {
     if (text.empty()) return;
     y -= ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y;

@@ -39,6 +39,10 @@ struct PanelRequests {
 // Where pane i of a grid of `count` lies in a picture of that size: left, top, width, height.
 glm::vec4 GridCell(int i, int count, glm::vec2 size);
 
+// Where snapshot i lies in the strip at the foot of a picture of that size, likewise, and how high the strip is: 0 where none is kept.
+glm::vec4 StripCell(std::size_t i, glm::vec2 size, float unit);
+float StripHeight(const PanelContext& context, glm::vec2 size);
+
 float BarHeight(const PanelContext& context);
 float ColumnWidth(const PanelContext& context);
 
@@ -46,8 +50,10 @@ void DrawBar(PanelContext& context, float width, PanelRequests& requests);
 void DrawColumn(PanelContext& context, glm::vec2 position, glm::vec2 size, PanelRequests& requests);
 // Names over the panes, the wipe's line, a map's legend, the pixel that is inspected. Origin top left, px.
 void DrawOverlay(PanelContext& context, glm::vec2 origin, glm::vec2 size);
-// The lobe at the pixel that is inspected, its bottom right corner at `corner`: app/view/lobe_plot.cpp.
-void DrawLobe(PanelContext& context, glm::vec2 corner);
+// The snapshots' frames and names; their pictures lie below.
+void DrawStrip(PanelContext& context, glm::vec2 origin, glm::vec2 size);
+// The lobe at the pixel that is inspected, in the picture's lower right: app/view/lobe_plot.cpp.
+void DrawLobe(PanelContext& context, glm::vec2 origin, glm::vec2 size);
 void DrawHelp(PanelContext& context, glm::vec2 window);
 
 }  // namespace arealab

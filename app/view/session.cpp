@@ -56,9 +56,39 @@ Session::Session(Opened opened)
       committed_(Current()) {}
 
 const Snapshot* Session::SnapshotOf(const ShownVariant& pane) const {
-  if (!pane.name.starts_with('#')) return nullptr;
-  const auto i = static_cast<std::size_t>(std::atoi(pane.name.c_str() + 1));
-  return i >= 1 && i <= snapshots.size() ? &snapshots[i - 1] : nullptr;
+  const auto found = std::ranges::find(snapshots, pane.name, &Snapshot::name);
+  return found == snapshots.end() ? nullptr : &*found;
+}
+
+void Session::Keep(const ShadedVariant& picture) {
+  if (snapshots.size() == kMostSnapshots) Drop(std::string(snapshots.front().name));
+  Snapshot kept{fmt::format("#{}", ++snapshots_kept_), "", picture, picture};
+  kept.label = fmt::format("{} {}", kept.name, picture.variant.name);
+  constexpr int kWidth = 192;  // px of the thumbnail
+  const RadianceImage& whole = *picture.image;
+  const int width = std::min(kWidth, whole.width), height = std::max(1, whole.height * width / whole.width);
+  auto image = std::make_shared<RadianceImage>(RadianceImage{width, height, {}, {}});
+  auto emission = std::make_shared<std::vector<glm::vec3>>();
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto i = static_cast<std::size_t>(y * whole.height / height) * static_cast<std::size_t>(whole.width) + static_cast<std::size_t>(x * whole.width / width);
+      image->diffuse.push_back(whole.diffuse[i]);
+      image->specular.push_back(whole.specular[i]);
+      emission->push_back((*picture.emission)[i]);
+    }
+  }
+  kept.thumbnail.image = std::move(image);
+  kept.thumbnail.emission = std::move(emission);
+  snapshots.push_back(std::move(kept));
+}
+
+void Session::Drop(const std::string& snapshot) {
+  const auto found = std::ranges::find(snapshots, snapshot, &Snapshot::name);
+  if (found == snapshots.end()) return;
+  for (ShownVariant& pane : panes) {
+    if (pane.name == snapshot) pane = found->picture.variant;
+  }
+  snapshots.erase(found);
 }
 
 const std::vector<Effect>& Session::Effects() {

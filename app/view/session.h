@@ -42,9 +42,10 @@ struct Opened {
 
 // A picture that was kept, to be compared with what comes after it. Panes name one "#1", "#2", …
 struct Snapshot {
-  std::string label;
-  ShadedVariant picture;
+  std::string name, label;
+  ShadedVariant picture, thumbnail;
 };
+constexpr std::size_t kMostSnapshots = 9;
 
 class Session {
  public:
@@ -81,6 +82,10 @@ class Session {
 
   // The snapshot that a pane names, or null where it names a variant.
   const Snapshot* SnapshotOf(const ShownVariant& pane) const;
+  // Of a picture as it is shown; the oldest goes where there are too many.
+  void Keep(const ShadedVariant& picture);
+  // Panes that show it show the variant it was of.
+  void Drop(const std::string& snapshot);
   int PaneCount() const { return layout == Layout::kGrid ? grid_panes : layout == Layout::kSingle ? 1 : 2; }
 
   // Ends an edit where one was made since the last call: call it when no control is held.
@@ -123,6 +128,7 @@ class Session {
   Edits committed_;
   std::vector<Edits> undo_, redo_;
   std::optional<Edits> autosaved_;
+  int snapshots_kept_ = 0;
   std::vector<Effect> effects_;  // of the scene that these describe
   std::optional<std::tuple<Edits, Camera, std::uint64_t>> effects_of_;
 };

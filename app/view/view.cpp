@@ -188,6 +188,7 @@ struct Inputs {
   std::vector<Key> keys;
   std::vector<std::string> dropped;  // files
   int buttons = 0;        // that are down
+  bool shift = false;     // as one went down last
   glm::dvec2 cursor{0.0};               // as the events tell, in the window; GLFW would say where it is by now
   glm::dvec2 press{0.0}, release{0.0};  // where a button went down and up last
 };
@@ -331,7 +332,8 @@ class View {
     PanelRequests requests;
     if (chrome_ != Chrome::kNone) {
       DrawOverlay(context, glm::vec2(origin_), glm::vec2(size_));
-      if (session_.inspected && session_.show_lobe) DrawLobe(context, glm::vec2(origin_ + size_));
+      if (session_.inspected && session_.show_lobe) DrawLobe(context, glm::vec2(origin_), glm::vec2(size_));
+      DrawStrip(context, glm::vec2(origin_), glm::vec2(size_));
     }
     if (all) {
       DrawBar(context, ImGui::GetIO().DisplaySize.x, requests);
@@ -457,9 +459,8 @@ class View {
   void KeepSnapshot() {
     const ShadedVariant* shaded = Shown(0);
     if (shaded == nullptr || !shaded->image) return;
-    const std::size_t number = session_.snapshots.size() + 1;
-    session_.snapshots.push_back({fmt::format("#{} {}", number, shaded->variant.name), *shaded});
-    Say(fmt::format("kept #{}: choose it in pane B to compare it with what comes", number));
+    session_.Keep(ShadedVariant(*shaded));
+    Say(fmt::format("kept {}: click it to compare it with what comes", session_.snapshots.back().label));
   }
 
   // ---------------------------------------------------------------------------------------------- turntable
@@ -536,6 +537,19 @@ class View {
         }
         break;
     }
+    settings.kind = plain;
+    if (chrome_ != Chrome::kNone) CompositeStrip(area, settings);
+  }
+
+  void CompositeStrip(const glm::ivec4& area, const DisplaySettings& settings) {
+    const float unit = unit_ * static_cast<float>(area.z) / static_cast<float>(size_.x);
+    for (std::size_t i = 0; i < session_.snapshots.size(); ++i) {
+      const int slot = 4 + static_cast<int>(i);
+      const ShadedVariant& kept = session_.snapshots[i].thumbnail;
+      display_.SetPicture(slot, kept.image, kept.emission, session_.lobe);
+      const glm::ivec4 cell(StripCell(i, glm::vec2(area.z, area.w), unit));
+      display_.Draw({area.x + cell.x, area.y + area.w - cell.y - cell.w, cell.z, cell.w}, slot, slot, settings);
+    }
   }
 
   // 1 % of the reference's mean luminance over what it lights, as in the report.
@@ -605,7 +619,7 @@ class View {
       if (io.MouseWheel != 0.0f) Dolly(camera, std::pow(0.9, io.MouseWheel));
     }
     if (drag_ == Drag::kPending && glm::distance(mouse, pressed_) > kClickReach && !maya) {
-      drag_ = io.KeyShift ? Drag::kPan : Drag::kOrbit;
+      drag_ = inputs.shift ? Drag::kPan : Drag::kOrbit;
     }
     const glm::dvec2 moved = mouse - std::exchange(dragged_, mouse);
     const double per_pixel = 2.0 / std::max(pane_size.y, 1.0);  // rad: half a turn for a drag of 1.6 heights
@@ -623,7 +637,7 @@ class View {
   void Click(glm::dvec2 at) {
     const auto pixel = PixelAt(at);
     if (!pixel) return;
-    if (ImGui::GetIO().KeyShift) {
+    if (inputs.shift) {
       session_.inspected = at;
       return;
     }
@@ -898,7 +912,8 @@ void WatchInputs(GLFWwindow* window) {
     inputs.cursor = {x, y};
     Noticed();
   });
-  glfwSetMouseButtonCallback(window, [](GLFWwindow*, int, int action, int) {
+  glfwSetMouseButtonCallback(window, [](GLFWwindow*, int, int action, int modifiers) {
+    if (action == GLFW_PRESS) inputs.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
     (action == GLFW_PRESS ? inputs.press : inputs.release) = inputs.cursor;
     inputs.buttons = std::max(inputs.buttons + (action == GLFW_PRESS ? 1 : -1), 0);
     Noticed();

@@ -44,7 +44,7 @@ Watch::Marks Watch::SceneMarks() const {
   const fs::path folder = scene_file_.has_parent_path() ? scene_file_.parent_path() : fs::path(".");
   for (auto entry = fs::directory_iterator(folder, error); !error && entry != fs::directory_iterator(); entry.increment(error)) {
     const std::string extension = entry->path().extension().string();
-    for (const char* used : {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".gltf", ".glb", ".obj", ".ply", ".stl", ".3ds"}) {
+    for (const char* used : {".png", ".ppm", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".gltf", ".glb", ".obj", ".ply", ".stl", ".3ds"}) {
       if (extension == used) Mark(entry->path(), marks);
     }
   }

@@ -12,6 +12,7 @@
 #include <ranges>
 #include <utility>
 
+#include "app/view/background.h"
 #include "app/view/truth_picture.h"
 #include "compare/harness.h"
 #include "compare/timing.h"
@@ -229,6 +230,11 @@ class Worker::Shading {
   friend class Worker;
 };
 
+void Yield(int steps) {
+  const auto thread = static_cast<id_t>(syscall(SYS_gettid));
+  setpriority(PRIO_PROCESS, thread, getpriority(PRIO_PROCESS, thread) + steps);
+}
+
 Worker::Worker(std::optional<ContextKind> kind, std::filesystem::path shader_folder, std::function<void()> wake)
     : shader_folder_(std::move(shader_folder)), wake_(std::move(wake)), thread_([this, kind] { Run(kind); }) {}
 
@@ -263,7 +269,7 @@ void Worker::Publish(const std::function<void(ViewState&)>& change) {
 
 void Worker::Run(std::optional<ContextKind> kind) {
   // Threads of a rasteriser inherit this: where processors are few, the window's own thread goes first.
-  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
+  Yield(5);
   std::unique_ptr<Shading> shading;
   while (true) {
     ViewJob job;

@@ -413,6 +413,14 @@ class ViewTest(unittest.TestCase):
         sky = saved()["sky"]["radiance"]
         for channel in sky:
             self.assertLess(abs(channel - 0.5), 1e-5)
+        # What changes on disk is read again: the scene, and the image where one of its lights shows it.
+        Drop([image], target, place[0] + x, place[1] + y)
+        until(lambda: window.log().count("shows stripes.ppm") == 2, "image on the light again")
+        text = saved() and file.read_text()
+        for changed, content in ((image, "P3 1 1 255\n9 9 9\n"), (file, text.replace("radiance = 3.0", "radiance = 6.0"))):
+            count = window.log().count("read again")
+            changed.write_text(content)
+            until(lambda: window.log().count("read again") > count, "change on disk")
         outside = FOLDER.parent / "outside.ppm"
         outside.write_text(image.read_text())
         Drop([outside], target, place[0] + x, place[1] + y)
