@@ -85,7 +85,7 @@ struct LobeFrame {
   glm::dvec3 x, y, z;
 };
 
-// Directions to the edge of what is above the horizon of a light, at most two degrees apart.
+// Directions to the edge of what is above the horizon of a light, at most a degree apart.
 std::vector<glm::dvec3> VisibleEdge(const Light& light, const ShadingPoint& point) {
   const double side = glm::dot(light.normal, point.position - light.center);
   if (IsFlat(light.shape) && !(side > 0.0 || (light.two_sided && side < 0.0))) return {};
@@ -105,7 +105,7 @@ std::vector<glm::dvec3> VisibleEdge(const Light& light, const ShadingPoint& poin
   for (std::size_t i = 0; i < above.size(); ++i) {
     const glm::dvec3 &a = above[i], &b = above[(i + 1) % above.size()];
     const double cosine = glm::dot(a, b) / std::max(glm::length(a) * glm::length(b), 1e-300);
-    const int steps = std::max(1, static_cast<int>(std::ceil(glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))) / 2.0)));
+    const int steps = std::max(1, static_cast<int>(std::ceil(glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))))));
     for (int k = 0; k < steps; ++k) edge.push_back(glm::normalize(glm::mix(a, b, static_cast<double>(k) / steps)));
   }
   return edge;

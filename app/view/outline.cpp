@@ -7,7 +7,7 @@
 namespace arealab {
 namespace {
 
-constexpr int kRingPoints = 64;
+constexpr int kRingPoints = 128;
 
 struct Placed {
   glm::dvec2 at;

@@ -8,7 +8,7 @@
 
 namespace arealab {
 
-// Points from a circle of 64, the first again at the end.
+// 128 points of a circle, the first again at the end.
 std::vector<glm::dvec3> Circle(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v);
 
 // What a drawing of the light shows, closed: of a tube both rims, joined along one line. Empty from inside a sphere.

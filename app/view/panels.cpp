@@ -363,6 +363,7 @@ void LightsTab(PanelContext& context) {
     for (std::size_t i = 0; i < lights.size(); ++i) {
       ImGui::PushID(static_cast<int>(i));
       if (ImGui::Selectable(lights[i].name.c_str(), static_cast<int>(i) == session.light)) session.light = static_cast<int>(i);
+      Tip(fmt::format("{}, a {}: click to select it, here or in the picture.", lights[i].name, Name(lights[i].shape)));
       ImGui::PopID();
     }
     ImGui::EndListBox();
@@ -397,6 +398,7 @@ void MaterialsTab(PanelContext& context) {
       if (ImGui::Selectable(materials[i].name.c_str(), static_cast<int>(i) == session.material)) {
         session.material = static_cast<int>(i);
       }
+      Tip(fmt::format("{}: click to edit it.", materials[i].name));
       ImGui::PopID();
     }
     ImGui::EndListBox();
@@ -458,25 +460,33 @@ void Fact(const char* label, const char* unit, const std::string& value, const s
   ImGui::TextUnformatted(value.c_str());
 }
 
-void PixelLights(const PanelContext& context, PanelRequests& requests) {
+void PixelLights(PanelContext& context, PanelRequests& requests) {
   const std::vector<LightAtPixel>& lights = context.inspection.lights;
+  const LightAtPixel* chosen = CaseLight(context.session, context.inspection);
   const std::size_t shown = std::min<std::size_t>(lights.size(), 4);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const LightAtPixel& light = lights[i];
-    ImGui::PushID(static_cast<int>(i));
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(Shortened(light.name, 5.5f * context.unit).c_str());
-    Tip(fmt::format("{}: form factor {:.5g}, the share of the cosine-weighted hemisphere that it fills", light.name, light.form_factor));
-    ImGui::SameLine(6.0f * context.unit);
-    Dim(light.clipping);
-    Tip("What of the light lies above the surface's plane.");
-    ImGui::SameLine(ImGui::GetWindowContentRegionWidth() - 3.0f * context.unit);
-    if (ImGui::Button("Copy", {-1.0f, 0.0f})) requests.copy = &light;
-    Tip("Ctrl + C. Copies as test case the line that `arealab stress --case` takes: this point under this light alone, with white albedo (diffuse is the "
-        "picture's over the albedo), F0 and radiance by their luminance, GGX, without texture, apertures and sky.");
-    ImGui::PopID();
+  if (ImGui::BeginTable("##lights", 3, ImGuiTableFlags_SizingStretchProp)) {
+    ImGui::TableSetupColumn("name", 0, 1.0f);
+    ImGui::TableSetupColumn("form factor", 0, 0.8f);
+    ImGui::TableSetupColumn("horizon", 0, 1.4f);
+    for (std::size_t i = 0; i < shown; ++i) {
+      const LightAtPixel& light = lights[i];
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::PushID(static_cast<int>(i));
+      if (ImGui::Selectable(light.name.c_str(), lights.size() > 1 && &light == chosen, ImGuiSelectableFlags_SpanAllColumns)) context.session.case_light = light.name;
+      ImGui::PopID();
+      Tip(fmt::format("{}: its form factor, and what of it lies above the surface's plane.", light.name));
+      ImGui::TableNextColumn();
+      ImGui::Text("%.4g", light.form_factor);
+      ImGui::TableNextColumn();
+      Dim(light.clipping);
+    }
+    ImGui::EndTable();
   }
   if (lights.size() > shown) Note(fmt::format("and {} that fill less of the hemisphere", lights.size() - shown));
+  if (ImGui::Button("Copy as test case", {-1.0f, 0.0f})) requests.copy = true;
+  Tip(fmt::format("Ctrl + C. The line that `arealab stress --case` takes: this point under '{}' alone, with white albedo (diffuse is the picture's over "
+                  "the albedo), F0 and radiance by their luminance, GGX, without texture, apertures and sky.", chosen->name));
 }
 
 void PixelTab(PanelContext& context, PanelRequests& requests) {
@@ -499,7 +509,7 @@ void PixelTab(PanelContext& context, PanelRequests& requests) {
     Fact("Form factor", "", fmt::format("{:.5g}", pixel.form_factor), "The share of the cosine-weighted hemisphere that the lights fill, summed.");
     ImGui::EndTable();
   }
-  Heading(pixel.lights.size() == 1 ? "Light" : "Lights");
+  Heading(pixel.lights.size() == 1 ? "Light, form factor, horizon" : "Lights, form factor, horizon");
   PixelLights(context, requests);
   Heading(fmt::format("{}, luminance   {}", session.lobe == Lobe::kTotal ? "Total" : session.lobe == Lobe::kDiffuse ? "Diffuse" : "Specular",
                       RadianceUnit(session.scene)));
@@ -688,6 +698,12 @@ void TechniqueTab(PanelContext& context) {
 }
 
 }  // namespace
+
+const LightAtPixel* CaseLight(const Session& session, const Inspection& inspection) {
+  if (inspection.lights.empty()) return nullptr;
+  const auto found = std::ranges::find(inspection.lights, session.case_light, &LightAtPixel::name);
+  return found == inspection.lights.end() ? &inspection.lights.front() : &*found;
+}
 
 glm::vec4 GridCell(int i, int count, glm::vec2 size) {
   const float columns = 2.0f, rows = count > 2 ? 2.0f : 1.0f, gap = 2.0f;

@@ -33,7 +33,7 @@ struct PanelContext {
 // What a person asked for that the window does.
 struct PanelRequests {
   bool save = false, reload = false, screenshot = false, exr = false, turntable = false, snapshot = false, toggle_help = false;
-  const LightAtPixel* copy = nullptr;  // its test case, to the clipboard
+  bool copy = false;  // the inspected pixel's test case, to the clipboard
 };
 
 // Where pane i of a grid of `count` lies in a picture of that size: left, top, width, height.
@@ -42,6 +42,9 @@ glm::vec4 GridCell(int i, int count, glm::vec2 size);
 // Where snapshot i lies in the strip at the foot of a picture of that size, likewise, and how high the strip is: 0 where none is kept.
 glm::vec4 StripCell(std::size_t i, glm::vec2 size, float unit);
 float StripHeight(const PanelContext& context, glm::vec2 size);
+
+// The light whose test case is copied; null where there is none.
+const LightAtPixel* CaseLight(const Session& session, const Inspection& inspection);
 
 float BarHeight(const PanelContext& context);
 float ColumnWidth(const PanelContext& context);

@@ -74,6 +74,7 @@ class Session {
   int material = 0;   // selected
   std::optional<glm::dvec2> inspected;  // 0 … 1 across the picture, from its top left
   bool show_lobe = true;                // of the inspected pixel, on the picture
+  std::string case_light;               // whose case is copied there; empty or gone: the one that fills most of the hemisphere
 
   std::vector<Snapshot> snapshots;
 

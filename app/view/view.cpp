@@ -345,7 +345,7 @@ class View {
     if (requests.screenshot) asked_shot_ = Numbered(".png");
     if (requests.turntable) StartTurntable(session_.scene.name + "_turntable");
     if (requests.snapshot) KeepSnapshot();
-    if (requests.copy != nullptr) CopyCase(*requests.copy);
+    if (requests.copy) CopyCase();
     if (requests.exr) asked_shot_ = Numbered(".exr");
     for (const std::string& file : std::exchange(inputs.dropped, {})) Drop(file);
     if (!ImGui::IsAnyItemActive() && !gizmo_.dragging()) session_.Commit();
@@ -656,8 +656,10 @@ class View {
     inspector_->Submit({last_.scene, last_.size, pixel, last_.variants, last_.effects_off, last_.library});
   }
 
-  void CopyCase(const LightAtPixel& light) {
-    const std::string line = CaseLine(light.test_case);
+  void CopyCase() {
+    const LightAtPixel* light = CaseLight(session_, inspection_);
+    if (light == nullptr) return;
+    const std::string line = CaseLine(light->test_case);
     glfwSetClipboardString(window_.window, line.c_str());
     Say(fmt::format("copied for `arealab stress --case`: {}", line));
   }
@@ -683,7 +685,7 @@ class View {
       case GLFW_KEY_S: return Save();
       case GLFW_KEY_R: return Restore();
       case GLFW_KEY_C:
-        if (session_.inspected && inspection_.surface && !inspection_.lights.empty()) CopyCase(inspection_.lights.front());
+        if (session_.inspected && inspection_.surface) CopyCase();
         return;
       case GLFW_KEY_EQUAL:
       case GLFW_KEY_KP_ADD: return Type(type_ + 10);
