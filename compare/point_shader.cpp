@@ -96,7 +96,7 @@ Light PointCase::Light() const {
 }
 
 LightIntegrals PointCase::Truth(double tolerance, Brdf brdf) const {
-  return IntegrateLight({position, normal, to_view, std::max(roughness * roughness, 1e-4), brdf}, Light(),
+  return IntegrateLight({position, glm::normalize(normal), glm::normalize(to_view), std::max(roughness * roughness, 1e-4), brdf}, Light(),
                         tolerance);
 }
 

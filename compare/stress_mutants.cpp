@@ -116,7 +116,7 @@ const std::vector<Mutant>& Mutants() {
        "alpha * p.z, t1 * x1 - t3 * x0 - t0 * y0 + t2 * y1);",
        "alpha * p.z, t1 * x1 - t3 * x0 + t0 * y0 + t2 * y1);",
        "a wrong sign in the vector form factor"},
-      {"point", "techniques/point.glsl", "max(dot(to_center, to_center), kMinDistance2)",
+      {"point", "far_field.glsl", "max(dot(to_center, to_center), kMinDistance2)",
        "dot(to_center, to_center)", "no guard at the light's centre",
        "the cosine is then no number, which is not above 0"},
       {"point", "surface.glsl", "const float kMinAlpha = 1e-4;", "const float kMinAlpha = 0.0;",

@@ -31,6 +31,10 @@ struct Outline {
   bool mirror_inside;  // whether the light covers the mirror direction
 };
 
+// Whether a chord lies in the horizon and is long. Where a light's plane passes by the point its ends are opposite but for rounding, so
+// that their sum points anywhere; the plane is known.
+bool SpansHorizon(vec3 p, vec3 q, float cosine, float sine) { return p.z == 0.0 && q.z == 0.0 && cosine < sine; }
+
 // Arc i of the outline. A quarter of a cone is measured from the nearer end of its long axis.
 Arc OutlineArc(Outline outline, int i) {
   Arc arc;
@@ -41,8 +45,8 @@ Arc OutlineArc(Outline outline, int i) {
     vec3 along = q - p;
     float cosine = sqrt(max(dot(middle, middle), 1e-14));
     float sine = sqrt(max(dot(along, along), 1e-14));
-    arc.axis_1 = middle / cosine;
     arc.axis_2 = along / sine;
+    arc.axis_1 = SpansHorizon(p, q, cosine, sine) ? vec3(arc.axis_2.y, -arc.axis_2.x, 0.0) : middle / cosine;
     arc.axis_3 = vec3(0.0);
     arc.sin_1 = 1.0;
     arc.sin_2 = 1.0;
@@ -83,14 +87,27 @@ void AddSide(vec3 p, vec3 q, INOUT(Outline) outline) {
   }
 }
 
-// The chords between the corners of the added sides, and their form factor; nothing of fewer than three.
+// The chords between the corners of the added sides, and their form factor; nothing of fewer than three. Corners nearer than 1e-6 are
+// one, since no float tells the direction of a chord between them.
 void CloseChords(vec3 mirror, INOUT(Outline) outline) {
-  int count = outline.corner_count;
-  if (count >= 3) {
-    for (int i = 0; i < count; ++i) {
-      vec3 p = outline.corners[i];
-      outline.corners[i] = p * inversesqrt(max(dot(p, p), 1e-30));
+  int count = 0;
+  vec3 before = vec3(0.0);
+  vec3 first = before;
+  for (int i = 0; i < outline.corner_count; ++i) {
+    vec3 p = outline.corners[i];
+    p *= inversesqrt(max(dot(p, p), 1e-30));
+    vec3 along = p - before;
+    if (dot(along, along) > 1e-12) {
+      first = count == 0 ? p : first;
+      outline.corners[count] = p;
+      ++count;
+      before = p;
     }
+  }
+  vec3 closing = before - first;
+  if (dot(closing, closing) <= 1e-12) --count;
+  if (count >= 3) {
+    outline.corner_count = count;
     outline.chord_count = count;
     outline.arc_count = count;
     outline.mirror_inside = true;
@@ -102,7 +119,7 @@ void CloseChords(vec3 mirror, INOUT(Outline) outline) {
       vec3 along = q - p;
       float cosine = length(middle);
       float sine = length(along);
-      vec3 plane = cross(middle, along);  // its length is cosine · sine
+      vec3 plane = SpansHorizon(p, q, cosine, sine) ? vec3(0.0, 0.0, cosine * sine) : cross(middle, along);
       sum += PositiveAngle(sine, cosine) * plane.z / max(cosine * sine, 1e-30);
       outline.mirror_inside = outline.mirror_inside && dot(plane, mirror) > 0.0;
     }

@@ -18,30 +18,6 @@ law = "additive"
 error = 0.56
 why = "each half is taken at its own centre"
 ---*/
-#include "light_texture.glsl"
-#include "lit.glsl"
-#include "specular_lobe.glsl"
+#include "far_field.glsl"
 
-// m²: below it no float position tells the centre from the point; there the direction is 0 and so is the radiance.
-const float kMinDistance2 = 1e-20;
-
-Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
-  Radiance radiance = Radiance(vec3(0.0), vec3(0.0));
-  vec3 to_center = light.center - surface.position;
-  float distance2 = max(dot(to_center, to_center), kMinDistance2);
-  vec3 to_light = to_center * inversesqrt(distance2);
-  float n_dot_l = dot(surface.normal, to_light);
-  if (!Lit(n_dot_l > 0.0)) return radiance;
-
-  // Intensity L·A·cosθ_l, W/sr; area is a sphere's cross-section and a sphere has no cosine.
-  float cos_light = light.shape == SHAPE_SPHERE ? 1.0 : max(-dot(light.normal, to_light), 0.0);
-#if EFFECT_TUBE
-  if (light.shape == SHAPE_TUBE) cos_light = length(cross(light.axis_x, to_light));  // how long it is seen
-#endif
-  vec3 irradiance = MeanRadiance(light) * (light.area * cos_light * n_dot_l / distance2);
-
-  radiance.diffuse = surface.diffuse_albedo * irradiance / kPi;
-
-  radiance.specular = SpecularBrdf(surface, to_view, to_light) * irradiance;
-  return radiance;
-}
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) { return FarField(surface, light, to_view); }

@@ -52,20 +52,24 @@ when = { brdf = "beckmann", shape = "tube" }
 error = 0.00024
 why = "too few nodes for a steep tail"
 ---*/
+#include "far_field.glsl"
 #include "gauss_nodes.glsl"
 #include "outline.glsl"
 #include "brdf"
 #include "textured_rectangle.glsl"
 
-// Half the nodes do where a ray's y or a panel's range of it is shorter: Gauss's error falls with the stretch's 2N-th power.
+// Half the nodes do where a ray's y or a panel's u is shorter, and all of them up to kLongestPart: Gauss's error falls with the
+// stretch's 2N-th power. Of 7815 grazing views of tests/compare/hard_configurations.h 0.1 % are more than 10 % off, as with parts of 4,
+// which cost 5 % more time; undivided it was 4.3 %.
 const float kShortReach = 0.15;
-const float kShortPanel = 0.3;
+const float kShortPanel = 1.2;
+const float kLongestPart = 6.0;
 
 // The arc's point nearest to `to`: (t, the foot on the tangent there as an offset in t, speed²), and its slope.
 vec3 NearestOnArc(Arc arc, LobeView view, vec2 to, out vec2 nearest) {
   const int kChords = 3;
-  const int kCuts = 1;
-  const int kSteps = 1;
+  const int kCuts = 3;
+  const int kSteps = 2;
   vec2 slope;
   vec2 derivative;
   ArcSlope(arc, view, arc.t0, slope, derivative);
@@ -142,30 +146,37 @@ vec2 RayIntegral(LobeView view, vec2 center, vec2 direction, float origin, float
   return sum * (reach * size);
 }
 
-// One stretch of an arc, nodes crowded about t_center.
+// asinh(x), with its digits near 0.
+float Asinh(float x) {
+  float a = abs(x);
+  float u = Log1p(a + a * a / (1.0 + sqrt(a * a + 1.0)));
+  return x < 0.0 ? -u : u;
+}
+
+// One stretch of an arc, t = t_center + width·sinh u; a long one in parts, since a view that grazes spreads it over many widths.
 vec2 PanelIntegral(Arc arc, LobeView view, vec2 center, float scale, float ring, float t0, float t1, float t_center, float width) {
   vec2 sum = vec2(0.0);
-  float x0 = (t0 - t_center) / width;
-  float x1 = (t1 - t_center) / width;
-  float y0 = RayMapInverse(abs(x0));
-  float y1 = RayMapInverse(abs(x1));
-  y0 = x0 < 0.0 ? -y0 : y0;
-  y1 = x1 < 0.0 ? -y1 : y1;
-  int first = y1 - y0 < kShortPanel ? 0 : FEW_NODES;
-  int last = y1 - y0 < kShortPanel ? FEW_NODES : FEW_NODES + NODES;
-  for (int i = first; i < last; ++i) {
-    float p;
-    float dp;
-    RayMap(mix(y0, y1, kNodes[i].x), p, dp);
+  float begin = Asinh((t0 - t_center) / width);
+  float range = Asinh((t1 - t_center) / width) - begin;
+  bool few = range < kShortPanel;
+  int count = few ? FEW_NODES : NODES;
+  int parts = int(clamp(ceil(range / kLongestPart), 1.0, 8.0));
+  float part_range = range / float(parts);
+  for (int i = 0; i < parts * count; ++i) {
+    int before = i / count;
+    vec2 node = kNodes[i - before * count + (few ? 0 : FEW_NODES)];
+    float grow = exp(begin + part_range * (float(before) + node.x));
+    float sinh_u = 0.5 * (grow - 1.0 / grow);
+    float cosh_u = 0.5 * (grow + 1.0 / grow);
     vec2 slope;
     vec2 derivative;
-    ArcSlope(arc, view, clamp(t_center + width * p, t0, t1), slope, derivative);
+    ArcSlope(arc, view, clamp(t_center + width * sinh_u, t0, t1), slope, derivative);
     vec2 offset = slope - center;
     float length2 = max(dot(offset, offset), 1e-30);
     float inv = inversesqrt(length2);
     vec2 direction = offset * inv;
     float span = length2 * inv - ring;
-    float turn = (direction.x * derivative.y - direction.y * derivative.x) * inv * (width * dp * (y1 - y0) * kNodes[i].y);
+    float turn = (direction.x * derivative.y - direction.y * derivative.x) * inv * (width * cosh_u * part_range * node.y);
     float layer = LayerLength(view, slope, direction);
     bool layered = layer * kThinLayer < span;
     float part = layered ? min(sqrt(layer * span), 0.5 * span) : 0.0;
@@ -270,7 +281,21 @@ vec2 SpecularIntegrals(Outline outline, LobeView view) {
   return max(sum * (view.alpha * view.alpha / kPi), vec2(0.0));
 }
 
+// Whether the light is so small, seen from here, that its far field is as near to the truth as float has its outline: within 1e-3 of its
+// most, since over it neither the cosines nor the lobe, α wide about its peak and as wide as it is far elsewhere, change more.
+bool IsFar(Surface surface, Light light, vec3 to_view) {
+  vec3 to_center = light.center - surface.position;
+  float distance2 = dot(to_center, to_center);
+  float extent2 = light.products.x + light.products.y;
+  if (extent2 > 1e-6 * distance2) return false;
+  vec3 half_vector = to_view + to_center * inversesqrt(distance2);
+  float height = dot(half_vector, surface.normal);
+  float spread2 = dot(half_vector, half_vector) + (surface.alpha * surface.alpha - 1.0) * height * height;
+  return extent2 * (1000.0 * height * height) < distance2 * spread2;
+}
+
 Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  if (IsFar(surface, light, to_view)) return FarField(surface, light, to_view);
 #if EFFECT_TEXTURED
   if (light.image.x > 0.0) {
     Radiance textured = TexturedRectangle(surface, light, to_view);

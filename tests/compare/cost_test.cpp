@@ -70,11 +70,11 @@ TEST(Cost, FiguresRepeatExactlyAndCostNothingTheSecondTime) {
 TEST(Cost, MoreWorkIsMoreCycles) {
   const TemporaryFolder folder;
   const ShaderLibrary plain;
-  std::string text = *plain.Find("techniques/point.glsl");
+  std::string text = *plain.Find("far_field.glsl");
   const std::string end = "  return radiance;\n}\n";
   text.replace(text.rfind(end), end.size(), "  radiance.specular *= exp(sin(surface.position.x));\n" + end);
   const TemporaryFolder live;
-  live.Write("techniques/point.glsl", text);
+  live.Write("far_field.glsl", text);
   const ShaderLibrary changed(live.path());
   const std::vector<Technique> techniques = LoadTechniques(plain), changed_techniques = LoadTechniques(changed);
   const CostMeter meter({"bonaire"}, folder.path() / "cache");
