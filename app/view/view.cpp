@@ -189,6 +189,7 @@ struct Inputs {
   std::vector<std::string> dropped;  // files
   int buttons = 0;        // that are down
   bool shift = false;     // as one went down last
+  bool pressed = false, released = false;  // since the last frame
   glm::dvec2 cursor{0.0};               // as the events tell, in the window; GLFW would say where it is by now
   glm::dvec2 press{0.0}, release{0.0};  // where a button went down and up last
 };
@@ -318,6 +319,7 @@ class View {
     wanted_shot_ = std::exchange(asked_shot_, {});
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    PlaceClick();
     ImGui::NewFrame();
     PanelContext context{session_, state_, worker_.progress(), unit_, wanted_shot_.empty() ? message_ : "", trouble_, inspection_, inspector_ && inspector_->busy(), cycles_, history_};
     context.flicker_pane = FlickerPane();
@@ -361,6 +363,18 @@ class View {
     if (!wanted_shot_.empty()) Shoot(std::exchange(wanted_shot_, {}), framebuffer);
     glfwSwapBuffers(window_.window);
     Note(start);
+  }
+
+  // A click counts where the button went down and where it came up, though the pointer may have gone on within a slow frame.
+  void PlaceClick() {
+    ImGuiIO& io = ImGui::GetIO();
+    const auto at = [&](glm::dvec2 p) { io.MousePos = {static_cast<float>(p.x), static_cast<float>(p.y)}; };
+    if (std::exchange(inputs.pressed, false)) {
+      at(inputs.press);
+    } else if (std::exchange(inputs.released, false)) {
+      at(inputs.release);
+      redraw_ = std::max(redraw_, 2);
+    }
   }
 
   // Figures of what is now on the screen.
@@ -915,6 +929,7 @@ void WatchInputs(GLFWwindow* window) {
     Noticed();
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow*, int, int action, int modifiers) {
+    (action == GLFW_PRESS ? inputs.pressed : inputs.released) = true;
     if (action == GLFW_PRESS) inputs.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
     (action == GLFW_PRESS ? inputs.press : inputs.release) = inputs.cursor;
     inputs.buttons = std::max(inputs.buttons + (action == GLFW_PRESS ? 1 : -1), 0);
