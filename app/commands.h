@@ -31,6 +31,9 @@ struct CommonOptions {
   std::filesystem::path CacheFolder() const;
 };
 
+// CLI::Range lets NaN pass.
+CLI::Validator Within(double low, double high);
+
 constexpr int kExitLimitExceeded = 1;
 constexpr int kExitBadInput = 2;
 

@@ -56,4 +56,14 @@ std::filesystem::path CommonOptions::CacheFolder() const {
   return std::filesystem::temp_directory_path() / "arealab";
 }
 
+CLI::Validator Within(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        double value = 0.0;
+        const bool within = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return within ? std::string() : fmt::format("{} is not from {:g} to {:g}", text, low, high);
+      },
+      fmt::format("FLOAT in [{:g} - {:g}]", low, high));
+}
+
 }  // namespace arealab

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/progress.h"
@@ -112,11 +113,11 @@ bool ExceedsLimits(const Results& results, const std::vector<Limit>& limits) {
 }
 
 // Prints what is worse than in the earlier run.
-bool IsWorse(const Results& results, const std::string& baseline) {
+bool IsWorse(const Results& results, const Baseline& baseline) {
   const BaselineReport report = CompareWithBaseline(results, baseline);
   for (const std::string& note : report.notes) fmt::print("{}\n", note);
   for (const std::string& line : report.worse) fmt::print(stderr, "{}\n", line);
-  fmt::print("{}: {} figures compared, {} worse\n", baseline, report.compared, report.worse.size());
+  fmt::print("{}: {} figures compared, {} worse\n", baseline.file.string(), report.compared, report.worse.size());
   return !report.worse.empty();
 }
 
@@ -152,6 +153,8 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   if (!arguments.merge.empty()) return Merge(arguments);
   std::vector<Limit> limits;
   for (const std::string& text : arguments.limits) limits.push_back(ParseLimit(text));
+  std::optional<Baseline> baseline;
+  if (!arguments.baseline.empty()) baseline.emplace(arguments.baseline);
 
   const ShaderLibrary library = arguments.common.Library();
   const std::vector<Technique> techniques = LoadTechniques(library);
@@ -208,7 +211,7 @@ int RunCompare(const CompareArguments& arguments, const std::string& command_lin
   if (arguments.timing && results.software) fmt::print("× point, net: a CPU rasteriser's times, not a GPU's\n");
   if (!results.no_isa.empty()) fmt::print("without cycles: {}\n", results.no_isa);
   fmt::print("report: {}\n", (std::filesystem::absolute(arguments.out) / "index.html").lexically_normal().string());
-  const bool exceeded = ExceedsLimits(results, limits), worse = !arguments.baseline.empty() && IsWorse(results, arguments.baseline);
+  const bool exceeded = ExceedsLimits(results, limits), worse = baseline && IsWorse(results, *baseline);
   return exceeded || worse ? kExitLimitExceeded : 0;
 }
 
@@ -246,7 +249,7 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
   command->add_option("--merge", arguments->merge, "folders of `arealab sweep --shard`: joins them into --out, and does nothing else");
   command->add_option("--tolerance", arguments->tolerance, "of the truth, relative, per pixel and light")
       ->capture_default_str()
-      ->check(CLI::Range(1e-8, 1e-1));
+      ->check(Within(1e-8, 1e-1));
   command->add_option("--cache", arguments->common.cache, "folder of truths already computed (default: the user's cache)");
   arguments->common.AddContext(*command);
   arguments->common.AddSize(*command);

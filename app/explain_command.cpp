@@ -127,7 +127,7 @@ void AddExplain(CLI::App& app, int& /*status*/) {
   command->add_option("--gpu", arguments->gpus, "AMD families whose cycles are estimated")->capture_default_str()->delimiter(',');
   command->add_option("--seconds", arguments->seconds, "of the clock per variant, at most")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 3600.0));
+      ->check(Within(0.1, 3600.0));
   command->add_flag("--total", arguments->total, "only all effects together, not the price of each");
   command->add_flag("--no-cycles", arguments->no_cycles, "no estimates for GPUs");
   command->add_flag("--json", arguments->json, "as JSON");

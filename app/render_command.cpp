@@ -116,7 +116,7 @@ void AddRender(CLI::App& app, int& /*status*/) {
   command->add_option("--exposure", arguments->exposure, "EV added to the scene's, for .png")->capture_default_str();
   command->add_option("--tolerance", arguments->tolerance, "of the truth, relative")
       ->capture_default_str()
-      ->check(CLI::Range(1e-8, 1e-1));
+      ->check(Within(1e-8, 1e-1));
   CLI::Option* fp64 = command->add_flag("--fp64", arguments->fp64, "the same shader text in double precision");
   command->add_flag("--fp16", arguments->fp16, "the same with every result rounded to a half float, as mediump may be")->excludes(fp64);
   command->add_option("--cache", arguments->common.cache, "folder of truths already computed (default: the user's cache)");

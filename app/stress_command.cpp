@@ -250,7 +250,7 @@ void AddStress(CLI::App& app, int& status) {
   command->add_option("--cases", arguments->cases, "of each variant, over all families")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--seed", arguments->seed, "of the generators")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "of the generators")->capture_default_str()->check(Within(0.0, 4294967295.0));
   command->add_option(
       "--case", arguments->one_case,
       "a case as the command prints it: what it is, and each variant's value in float, double, ideal form");

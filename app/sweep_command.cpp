@@ -110,7 +110,7 @@ void AddSweep(CLI::App& app, int& /*status*/, const std::string& command_line) {
   command->add_option("--shard", arguments->shard, "i/n: every n-th value from the i-th on; `compare --merge` joins the parts")
       ->capture_default_str();
   command->add_option("--out", arguments->out, "folder of the curves")->capture_default_str();
-  command->add_option("--seconds", arguments->seconds, "of clock for the times at each value; 0: no times")->capture_default_str()->check(CLI::Range(0.0, 600.0));
+  command->add_option("--seconds", arguments->seconds, "of clock for the times at each value; 0: no times")->capture_default_str()->check(Within(0.0, 600.0));
   command->add_option("--cache", arguments->common.cache, "folder of truths already computed (default: the user's cache)");
   arguments->common.AddContext(*command);
   arguments->common.AddSize(*command);

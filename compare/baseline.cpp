@@ -88,8 +88,10 @@ void CompareScene(const Results& results, const SceneResult& now, const json& ba
 
 }  // namespace
 
-BaselineReport CompareWithBaseline(const Results& results, const std::filesystem::path& file) {
-  const json baseline = ReadResults(file);
+Baseline::Baseline(const std::filesystem::path& path) : file(path), results(ReadResults(path)) {}
+
+BaselineReport CompareWithBaseline(const Results& results, const Baseline& earlier) {
+  const json& baseline = earlier.results;
   BaselineReport report;
   try {
     for (const SceneResult& scene : results.scenes) {
@@ -101,7 +103,7 @@ BaselineReport CompareWithBaseline(const Results& results, const std::filesystem
       }
     }
   } catch (const json::exception& error) {
-    throw InputError(fmt::format("{}: {}; expected a results.json of this version", file.string(), error.what()));
+    throw InputError(fmt::format("{}: {}; expected a results.json of this version", earlier.file.string(), error.what()));
   }
   const json compilers = baseline.value("isa_compilers", json());
   if (compilers.is_string() && !results.compilers.empty() && compilers != results.compilers) {

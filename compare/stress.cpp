@@ -35,6 +35,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const char* const kThin =
     "the terms of the two long sides differ by width over distance of themselves, and float has 6e-8 of "
     "each: 5e-2 measured at 1 : 1e5";
+const char* const kSlender = "the same of the two long sides of a tube of 1 : 50";
 const char* const kCorner =
     "1e-9 of a size from a side, which side the point is on is the rounding of the sums that turn the light "
     "into another frame";
@@ -57,9 +58,10 @@ const std::array kAllowances{
                     {kUnbounded, kUnbounded, kUnbounded},
                     "the techniques' normals are unit, and the G-buffer makes them so: of others a value is "
                     "asked, not which"},
-    StressAllowance{"ltc", "thin", {0.15, 0.06, 8.0}, kThin},
-    StressAllowance{"ltc", "tube_thin", {0.15, 0.06, 8.0}, kThin},
-    StressAllowance{"ltc", "tube_crossing", {1e-3, 1.5e-4, 8.0}, "the same: the two long sides of 1 : 50, cut at the horizon"},
+    StressAllowance{"ltc", "thin", {0.4, 0.1, 8.0}, kThin},
+    StressAllowance{"ltc", "tube", {1e-3, 1e-4, 8.0}, kSlender},
+    StressAllowance{"ltc", "tube_thin", {0.45, 0.1, 8.0}, kThin},
+    StressAllowance{"ltc", "tube_crossing", {1e-3, 1.5e-4, 8.0}, kSlender},
     StressAllowance{"ltc", "on_edge", {1e-3, 2e-5, 1e3}, kCorner},
     StressAllowance{"ltc", "on_corner", {1e-3, 2e-5, 1e4}, kCorner},
     StressAllowance{"ltc", "corners", {1e-3, 2e-5, kUnbounded}, kCorner},
@@ -70,7 +72,7 @@ const std::array kAllowances{
     StressAllowance{"hill", "edge_on", {1e-3, 2e-5, 100.0}, kFullSky},
     StressAllowance{"hill", "contact", {1e-2, 2e-3, 8.0}, kFullSky},
     StressAllowance{"hill", "huge", {1e-3, 5e-4, 8.0}, kFullSky},
-    StressAllowance{"light_field", "thin", {0.2, 0.06, 8.0}, kThin},
+    StressAllowance{"light_field", "thin", {0.7, 0.2, 8.0}, kThin},
     StressAllowance{"light_field", "on_edge", {1e-3, 2e-5, kUnbounded}, kSharp},
     StressAllowance{"light_field", "on_corner", {1e-3, 2e-5, kUnbounded}, kSharp},
     StressAllowance{"light_field", "corners", {1e-3, 2e-5, kUnbounded}, kSharp},
@@ -102,6 +104,16 @@ const std::array kAllowances{
         "the excess of the triangle between a dot and the horizon through it: 1e-11 of the light's radiance"},
     StressAllowance{"oat", "*", {1e-3, 5e-5, 50.0}, kSolidAngle},
     StressAllowance{"mayaux", "*", {1e-3, 5e-5, 20.0}, kSolidAngle},
+    StressAllowance{
+        "karis",
+        "view_grazing",
+        {1e-3, 2e-5, 1e3},
+        "the sum of the view and its mirror direction is 2 n.v long, 5e-7 at 2.7e-7, and rounded at 6e-8: so is the half vector"},
+    StressAllowance{
+        "karis",
+        "tube_crossing",
+        {3e-2, 2e-5, 8.0},
+        "within a tube prolonged the axis may lie on the mirrored ray: 1 ulp of an input explains the 7.5e-3 that were seen"},
     StressAllowance{"monte_carlo", "*", {kUnbounded, kUnbounded, kUnbounded}, kSamples},
     StressAllowance{"reference", "touching", {3e-3, 2e-4, 8.0}, kPolar},
     StressAllowance{"reference", "on_plane", {1e-3, 2e-5, 100.0}, kCorner},
@@ -160,11 +172,10 @@ const std::array kApproximationAllowances{
     ApproximationAllowance{"*", "on_corner", kInfinity, kAmbiguous},
     ApproximationAllowance{"*", "corners", kInfinity, kAmbiguous},
     ApproximationAllowance{"*", "normal_map", kInfinity, "of normals that are not unit a value is asked, not which"},
-    ApproximationAllowance{"*", "tube_beside", kInfinity, "an outline's chord passes through the point or next to it"},
     ApproximationAllowance{"ltc", "thin", 1.0, kPairs},
     ApproximationAllowance{"light_field", "thin", 1.0, kPairs},
     ApproximationAllowance{"light_field", "roughness", 0.4, kSharp},
-    ApproximationAllowance{"light_field", "mirror", 0.03, kSharp},
+    ApproximationAllowance{"light_field", "mirror", 0.15, kSharp},
     ApproximationAllowance{"light_field", "*", 5e-3, kSharp},
     ApproximationAllowance{"hill", "thin", 1.0, kPairs},
     ApproximationAllowance{"hill", "*", 0.02, "the fit of the clipped proxy sphere is within 6.2e-3 of the light"},

@@ -13,6 +13,15 @@ vec3 EdgeVector(vec4 v0, vec4 v1, bool lambert) {
   return ratio * c;
 }
 
+// The same of a side in the horizon that closes an outline, of which it says only its angle: where the light's plane passes by the point
+// its ends are opposite but for rounding, and then their cross product says nothing. A corner that is 0 stands for none.
+vec3 HorizonEdge(vec4 v0, vec4 v1) {
+  float d = v0.x * v1.x + v0.y * v1.y;
+  float area = v0.x * v1.y - v0.y * v1.x;
+  float sense = d < 0.0 || area > 0.0 ? 1.0 : (area < 0.0 ? -1.0 : 0.0);
+  return vec3(0.0, 0.0, sense * EdgeAngle(d, v0.w * v1.w, abs(area)));
+}
+
 // Where the side from a corner above to one below meets the horizon; only its direction counts.
 vec3 MeetHorizon(vec3 above, vec3 below) { return above.z * below - below.z * above; }
 

@@ -77,7 +77,7 @@ vec3 ClippedPolygon(Light light, PolygonView view, bool lambert) {
     outline = StreamSide(outline, from, to, lambert);
     from = to;
   }
-  return CloseOutline(outline, lambert);
+  return CloseOutline(outline);
 }
 
 // The same where nothing is clipped: what is below subtracts.

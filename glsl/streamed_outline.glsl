@@ -33,6 +33,6 @@ StreamedOutline StreamSide(StreamedOutline outline, vec3 a, vec3 b, bool lambert
 }
 
 // The side in the horizon closes the outline.
-vec3 CloseOutline(StreamedOutline outline, bool lambert) {
-  return VectorOfEdges(outline.sum + EdgeVector(EdgeVertex(outline.leave), EdgeVertex(outline.enter), lambert));
+vec3 CloseOutline(StreamedOutline outline) {
+  return VectorOfEdges(outline.sum + HorizonEdge(EdgeVertex(outline.leave), EdgeVertex(outline.enter)));
 }

@@ -14,7 +14,7 @@ vec3 StreamedCorners(vec3 center, vec3 half_a, vec3 half_b, bool lambert) {
   outline = StreamSide(outline, p1, p2, lambert);
   outline = StreamSide(outline, p2, p3, lambert);
   outline = StreamSide(outline, p3, p0, lambert);
-  return CloseOutline(outline, lambert);
+  return CloseOutline(outline);
 }
 
 // Its z is the form factor for a clamped cosine about +z.

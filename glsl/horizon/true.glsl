@@ -29,5 +29,5 @@ vec3 LobeVector(vec4 m, RectangleView view) {
   outline = StreamTransformed(outline, surface, m, p3, p0);
   // The side in the surface's horizon; in the lobe's space it can lie anywhere.
   outline = StreamSide(outline, LtcTransform(m, surface.leave), LtcTransform(m, surface.enter), false);
-  return CloseOutline(outline, false);
+  return CloseOutline(outline);
 }

@@ -17,7 +17,7 @@ TubeStream StreamTubeSide(TubeStream stream, vec3 a, vec3 b, bool lambert) {
     vec3 to = b_above ? b : MeetHorizon(a, b);
     next.sum += EdgeVector(EdgeVertex(from), EdgeVertex(to), lambert);
     if (!a_above) {
-      next.sum += EdgeVector(EdgeVertex(next.leave), EdgeVertex(from), lambert);
+      next.sum += HorizonEdge(EdgeVertex(next.leave), EdgeVertex(from));
       if (next.leave == vec3(0.0)) next.first = from;
       next.leave = vec3(0.0);
     }
@@ -51,7 +51,7 @@ vec3 ChainVector(TubeChain chain, bool small, bool lambert) {
   stream = StreamTubeSide(stream, p5, p6, lambert);
   stream = StreamTubeSide(stream, p6, p7, lambert);
   stream = StreamTubeSide(stream, p7, p0, lambert);
-  return VectorOfEdges(stream.sum + EdgeVector(EdgeVertex(stream.leave), EdgeVertex(stream.first), lambert));
+  return VectorOfEdges(stream.sum + HorizonEdge(EdgeVertex(stream.leave), EdgeVertex(stream.first)));
 }
 
 void TubeFactors(Light light, vec3 position, ShadingFrame frame, vec4 m, OUT(float) form_factor, OUT(vec3) transformed) {

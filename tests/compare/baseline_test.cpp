@@ -26,22 +26,22 @@ VariantResult& Named(Results& results, const std::string& short_name) {
   throw std::logic_error(short_name);
 }
 
-class Baseline : public testing::Test {
+class BaselineTest : public testing::Test {
  protected:
   BaselineReport Against(const Results& now) const {
-    return CompareWithBaseline(now, folder_.Write("results.json", ResultsJson(Sample())));
+    return CompareWithBaseline(now, Baseline(folder_.Write("results.json", ResultsJson(Sample()))));
   }
   TemporaryFolder folder_;
 };
 
-TEST_F(Baseline, TheSameResultsAreNoWorse) {
+TEST_F(BaselineTest, TheSameResultsAreNoWorse) {
   const BaselineReport report = Against(Sample());
   EXPECT_THAT(report.worse, IsEmpty());
   EXPECT_THAT(report.notes, IsEmpty());
   EXPECT_GT(report.compared, 50);
 }
 
-TEST_F(Baseline, WhatIsWithinTheNoiseIsNoNews) {
+TEST_F(BaselineTest, WhatIsWithinTheNoiseIsNoNews) {
   Results now = Sample();
   Named(now, "ltc").total.rel_rmse += 1.5 * now.scenes[0].truth_relative_error;
   Estimate& ratio = Named(now, "hill").time.ratio_to_point;
@@ -50,7 +50,7 @@ TEST_F(Baseline, WhatIsWithinTheNoiseIsNoNews) {
   EXPECT_THAT(Against(now).worse, IsEmpty());
 }
 
-TEST_F(Baseline, WhatIsWorseIsNamedWithBothFigures) {
+TEST_F(BaselineTest, WhatIsWorseIsNamedWithBothFigures) {
   Results now = Sample();
   Named(now, "ltc").specular.rel_rmse *= 1.2;
   Estimate& ratio = Named(now, "hill").time.ratio_to_point;
@@ -62,7 +62,7 @@ TEST_F(Baseline, WhatIsWorseIsNamedWithBothFigures) {
                           HasSubstr("ltc: specular error")));
 }
 
-TEST_F(Baseline, OtherCompilersOrScenesAreNotCompared) {
+TEST_F(BaselineTest, OtherCompilersOrScenesAreNotCompared) {
   Results now = Sample();
   now.compilers = "radv Mesa 99";
   Named(now, "oat").isa.at("bonaire").core.cycles += 100;
@@ -73,8 +73,8 @@ TEST_F(Baseline, OtherCompilersOrScenesAreNotCompared) {
   EXPECT_THAT(report.notes, ElementsAre("new: not in the baseline", HasSubstr("cycles are not compared")));
 }
 
-TEST_F(Baseline, AFileThatIsNoneAndAnotherSizeAreRefused) {
-  const auto against = [&](const std::string& text) { CompareWithBaseline(Sample(), folder_.Write("a.json", text)); };
+TEST_F(BaselineTest, AFileThatIsNoneAndAnotherSizeAreRefused) {
+  const auto against = [&](const std::string& text) { CompareWithBaseline(Sample(), Baseline(folder_.Write("a.json", text))); };
   const std::string expected = "expected a results.json", scenes = "{\"schema\": 1, \"scenes\": ";
   for (const std::string& text : {std::string("{}"), std::string("[1]"), std::string("{\n\n,"), scenes + "1}", scenes + "[1]}", scenes + "[1e999]}",
                                   scenes + std::string(100000, '[')}) {

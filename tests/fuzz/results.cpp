@@ -30,7 +30,7 @@ void ResultsFile(Bytes bytes) {
   static const Results now = Sample();
   const std::string text = Text(bytes);
   const std::filesystem::path file = File("results.json", text);
-  Reads([&] { CompareWithBaseline(now, file); });
+  Reads([&] { CompareWithBaseline(now, Baseline(file)); });
   Reads([&] { WriteSweep({text, text}, Folder() / "sweep"); });
 }
 
