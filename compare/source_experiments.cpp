@@ -10,6 +10,12 @@
 #include "glsl/dual_begin.h"
 #include "glsl/representative_point.glsl"
 #include "glsl/solid_angle.glsl"
+namespace unit {
+#include "glsl/bisector/unit.glsl"
+}
+namespace sum {
+#include "glsl/bisector/sum.glsl"
+}
 namespace documented {
 #include "glsl/segment/documented.glsl"
 #include "glsl/fake_clip.glsl"
@@ -87,10 +93,10 @@ double Share(const auto& clipped) { return (clipped.high.x - clipped.low.x) * (c
 std::vector<RepresentativePointErrors> RerunDrobotPoints(int lights, unsigned seed) {
   std::vector<RepresentativePointErrors> results;
   for (const bool facing : {true, false}) {
-    for (const char* form : {"closest", "halfway", "plane"}) results.push_back({form, facing, lights});
+    for (const char* form : {"closest", "halfway", "plane", "sum"}) results.push_back({form, facing, lights});
   }
   LightRandom random(seed);
-  for (std::size_t group = 0; group < results.size(); group += 3) {
+  for (std::size_t group = 0; group < results.size(); group += 4) {
     for (int done = 0; done < lights;) {
       const FlatLight light = RandomLight(random, done % 2 == 1);
       const bool faces = light.normal.z < 0.0;
@@ -105,9 +111,10 @@ std::vector<RepresentativePointErrors> RerunDrobotPoints(int lights, unsigned se
         const glm::dvec2 p = glm::mix(p_c, p_r, i / 400.0);
         if (std::abs(light.At(p) - integral) < std::abs(light.At(best) - integral)) best = p;
       }
-      const glm::dvec2 on_plane = dual::HalfwayHit(light.point, normal_hit, glm::dvec2(0.0));
-      const std::array<glm::dvec2, 3> points{dual::HalfwayHit(light.point, p_c - foot, p_r - foot), light.Closest(on_plane), on_plane};
-      for (std::size_t form = 0; form < 3; ++form) {
+      const glm::dvec2 on_plane = dual::unit::HalfwayHit(light.point, normal_hit, glm::dvec2(0.0));
+      const std::array points{dual::unit::HalfwayHit(light.point, p_c - foot, p_r - foot), light.Closest(on_plane), on_plane,
+                              dual::sum::HalfwayHit(light.point, normal_hit, glm::dvec2(0.0))};
+      for (std::size_t form = 0; form < points.size(); ++form) {
         RepresentativePointErrors& r = results[group + form];
         r.distance += glm::length(points[form] - best) / std::sqrt(light.Area()) / lights;
         r.from_best += std::abs(light.At(points[form]) / light.At(best) - 1.0) / lights;

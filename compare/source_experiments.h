@@ -11,7 +11,7 @@ namespace arealab {
 // size, 1 to 4 m away. The best point is that of the segment between the light's points closest to both maxima whose cosine times the
 // light's solid angle (eq. 1.15) comes nearest to the integral. Means over the lights.
 struct RepresentativePointErrors {
-  std::string form;      // "closest", "halfway", "plane": choices of drobot's option `point`
+  std::string form;      // "closest", "halfway", "plane": choices of drobot's option `point`; "sum": plane+bisector=sum
   bool facing = true;    // lights that face the surface (n · n' < 0), or those that do not
   int lights = 0;
   double distance = 0.0;       // from the best point, over the square root of the light's area

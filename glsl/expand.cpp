@@ -128,7 +128,7 @@ class Expander {
              : precision_ == Precision::kHalf ? "platform_half.glsl"
                                               : "platform_float.glsl";
     }
-    if (name == "brdf" || name == "importance_cone") return fmt::format("{}/{}.glsl", name, Name(brdf_));
+    if (name == "brdf" || name == "importance_cone" || name == "specular_albedo") return fmt::format("{}/{}.glsl", name, Name(brdf_));
     if (!variant_.technique) return name;
     // What the pass does where the technique does not take it itself.
     if (name == "visibility") return Takes("aperture") ? "visibility/own.glsl" : "visibility/aperture.glsl";

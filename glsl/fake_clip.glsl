@@ -16,7 +16,9 @@ float HeightOverHorizon(vec2 p, vec3 point, vec3 normal) {
 
 // Widens the rectangle to the segment's clipped end and returns it.
 vec2 FollowSegment(vec2 from, vec2 to, vec3 point, vec3 normal, INOUT(ClippedRectangle) clipped) {
-  vec2 p = ClipSegment(from, to, HeightOverHorizon(from, point, normal), HeightOverHorizon(to, point, normal), kSegmentInset);
+  // The rise by itself: of a level side it is exactly 0.
+  float rise = dot(to - from, vec2(normal.x, normal.y));
+  vec2 p = ClipSegment(from, to, HeightOverHorizon(from, point, normal), rise, kSegmentInset);
   clipped.low = min(clipped.low, p);
   clipped.high = max(clipped.high, p);
   return p;

@@ -17,7 +17,7 @@ struct Form {
   GLuint unit;  // as in glsl/platform_inputs.glsl
 };
 constexpr Form kForms[] = {{"light_image", 8}, {"light_weights", 9}, {"light_means", 10}, {"light_cosine", 11}, {"light_cosine_border", 12},
-                          {"light_solid_angle", 13}, {"light_phong", 7}};
+                          {"light_solid_angle", 13}, {"light_phong", 7}, {"light_straight", 15}};
 
 constexpr int kSide = 128;           // of level 0 of means and blurred forms
 constexpr int kMeanLevels = 8;       // 128 … 1
@@ -50,6 +50,18 @@ TextureLevels WeightLevels(const Image& image, std::size_t nodes, int levels) {
     }
   }
   return result;
+}
+
+TextureLevels StraightLevels(const Image& image) {
+  Image straight = image, alpha = image;
+  for (glm::vec4& texel : straight.pixels) texel = texel.a > 0.0f ? texel / texel.a : glm::vec4(0.0f);
+  for (glm::vec4& texel : alpha.pixels) texel = glm::vec4(texel.a);
+  TextureLevels levels = WeightLevels(straight, 1, kMeanLevels);
+  const TextureLevels alphas = WeightLevels(alpha, 1, kMeanLevels);
+  for (std::size_t level = 0; level < levels.levels.size(); ++level) {
+    for (std::size_t i = 0; i < levels.levels[level].size(); ++i) levels.levels[level][i].a = alphas.levels[level][i].r;
+  }
+  return levels;
 }
 
 // r of a level, in √area.
@@ -137,6 +149,7 @@ TextureLevels MakeTextureLevels(const std::string& name, const ShownTexture& tex
     return WeightLevels(*texture.image, 3, levels);
   }
   if (name == "light_means") return WeightLevels(*texture.image, 1, kMeanLevels);
+  if (name == "light_straight") return StraightLevels(*texture.image);
   // What does not depend on ρ falls out in the normalisation.
   if (name == "light_solid_angle") {
     return BlurredLevels(texture, false, [](double r2, double rho2) { return std::sqrt(r2) / std::pow(r2 + rho2, 1.5); });

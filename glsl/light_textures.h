@@ -5,9 +5,11 @@
 //   light_means          means over 128 × 128 squares, then half as many a side at each level
 //   light_cosine         blurred: level l by what a cosine lobe that faces the light from r = (2^l − 1)/32 of its √area away throws
 //                        on its plane, r²/(π (ρ² + r²)²), normalised over the light: what is a constant stays one, up to the edge
-//   light_cosine_border  the same with what it is around the light: the light's own square is 0.125 … 0.875//   light_solid_angle    blurred as light_cosine, by the light's solid angle from a point r before each place of it
+//   light_cosine_border  the same with what it is around the light: the light's own square is 0.125 … 0.875
+//   light_solid_angle    blurred as light_cosine, by the light's solid angle from a point r before each place of it
 //   light_phong          by Phong's lobe from √area before each place, along the normal, of the exponent whose importance cone
 //                        (half angle √(2/(g + 2)) [Drobot 2014, eq. 1.18]) throws a trace of radius r there
+//   light_straight       as light_means, of the colours not multiplied by alpha (black where it is 0) and, in w, of alpha
 #pragma once
 
 #include <map>

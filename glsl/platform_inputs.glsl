@@ -22,6 +22,7 @@ layout(binding = 11) uniform sampler2DArray light_cosine;        // blurred by a
 layout(binding = 12) uniform sampler2DArray light_cosine_border; // the same, with what lies around the light
 layout(binding = 13) uniform sampler2DArray light_solid_angle;   // blurred by solid angle
 layout(binding = 7) uniform sampler2DArray light_phong;          // blurred by Phong's lobe
+layout(binding = 15) uniform sampler2DArray light_straight;     // means of colours and of alpha, each by itself
 #endif
 
 #define MAX_LIGHTS 256

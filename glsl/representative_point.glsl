@@ -24,12 +24,3 @@ vec2 NearestHit(vec3 point, vec3 normal) {
 vec2 ClosestOnRectangle(vec2 p, vec2 half_size) { return clamp(p, -half_size, half_size); }
 
 vec2 ClosestOnDisk(vec2 p, float radius) { return p * (radius / max(radius, length(p))); }
-
-// Where the halfway vector between the directions to point + (a, −z) and point + (b, −z) meets the light's plane.
-// Their bisector divides the segment as the distances do. The print normalises the sum only, which would be the segment's
-// middle; a halfway vector is one of unit vectors, as in his eq. 1.9, and of the two it errs less.
-vec2 HalfwayHit(vec3 point, vec2 a, vec2 b) {
-  float length_a = sqrt(dot(a, a) + point.z * point.z);
-  float length_b = sqrt(dot(b, b) + point.z * point.z);
-  return vec2(point.x, point.y) + (a * length_b + b * length_a) / max(length_a + length_b, 1e-30);
-}

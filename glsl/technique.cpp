@@ -35,7 +35,7 @@ std::vector<std::string> BrdfNames() {
 constexpr std::string_view kHeldLaws[] = {"scale", "rotation", "radiance"};  // without being claimed
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
-                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "importance_cone", "visibility"};
+                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "importance_cone", "specular_albedo", "visibility"};
 
 std::vector<std::string> ShapeNames(const std::vector<LightShape>& shapes) {
   std::vector<std::string> names;

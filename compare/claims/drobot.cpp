@@ -1,4 +1,6 @@
 // Drobot, Physically Based Area Lights, GPU Pro 5.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -88,6 +90,7 @@ Finding TheShortcutIsWorse(ClaimBench&) {
   const RepresentativePointErrors facing = Rerun("plane", true), away = Rerun("plane", false);
   Finding found = Experiment(facing, away);
   found.figures.push_back({"with the point brought onto the light, from the best point's", Rerun("halfway", true).from_best, ""});
+  found.figures.push_back({"with the halfway vector as the pseudo code prints it, of vectors that are not of length 1", Rerun("sum", true).from_best, ""});
   found.verdict = facing.from_best > 0.15 && facing.from_best < 0.3 ? Verdict::kHolds : facing.from_best > 0.15 ? Verdict::kPartly : Verdict::kFails;
   return found;
 }
@@ -100,6 +103,88 @@ Finding WorseForLightsThatFaceAway(ClaimBench&) {
   return found;
 }
 
+// A floor seen aslant, and over it, upright, a rectangle that reflects in it, turned in its own plane: a strip of 1.6 × 0.2 m, or a
+// square as large. Points of the floor, row by row from the viewer.
+constexpr int kFloorColumns = 11, kFloorRows = 15;
+std::vector<PointCase> OverTheFloor(bool strip, double turn) {
+  const double a = turn * 3.14159265358979323846 / 180.0;
+  std::vector<PointCase> cases;
+  for (int row = 0; row < kFloorRows; ++row) {
+    for (int column = 0; column < kFloorColumns; ++column) {
+      PointCase c;
+      c.position = {-1.0 + 2.0 * column / (kFloorColumns - 1), -1.8 + 3.2 * row / (kFloorRows - 1), 0.0};
+      c.to_view = glm::normalize(glm::dvec3(0.0, -4.0, 1.2) - c.position);
+      c.roughness = 0.35;
+      c.center = {0.0, 1.5, 0.95};
+      c.light_normal = {0.0, -1.0, 0.0};
+      c.axis_x = {std::cos(a), 0.0, std::sin(a)};
+      c.axis_y = glm::cross(c.light_normal, c.axis_x);
+      c.half_size = strip ? glm::dvec2(0.8, 0.1) : glm::dvec2(std::sqrt(0.08));
+      cases.push_back(c.Rounded());
+    }
+  }
+  return cases;
+}
+
+// Of the specular lobe over that floor: his form and the truth.
+struct OnTheFloor {
+  std::vector<double> his, truth;
+  double Error() const {  // relative RMSE
+    double squares = 0.0, reference = 0.0;
+    for (std::size_t i = 0; i < his.size(); ++i) {
+      squares += (his[i] - truth[i]) * (his[i] - truth[i]);
+      reference += truth[i] * truth[i];
+    }
+    return std::sqrt(squares / reference);
+  }
+};
+OnTheFloor ShadeFloor(ClaimBench& bench, Brdf brdf, bool strip, double turn) {
+  const std::vector<PointCase> cases = OverTheFloor(strip, turn);
+  OnTheFloor floor;
+  for (const Shaded& s : bench.Shade("drobot@published", cases, Precision::kFloat, brdf)) floor.his.push_back(s.specular);
+  for (const PointCase& c : cases) floor.truth.push_back(c.Truth(1e-3, brdf).specular);
+  return floor;
+}
+
+Finding PhongAloneForRectangles(ClaimBench& bench) {
+  Finding found;
+  found.plot = {"distance along the floor from below the strip, m", "specular of a strip across the view, of its radiance", {}};
+  double worst[2] = {0.0, 0.0};
+  for (const Brdf brdf : {Brdf::kPhong, Brdf::kBlinnPhong}) {
+    const std::string name = brdf == Brdf::kPhong ? "Phong" : "Blinn-Phong";
+    for (const double turn : {0.0, 45.0, 90.0}) {
+      const OnTheFloor floor = ShadeFloor(bench, brdf, true, turn);
+      found.figures.push_back({fmt::format("{}, the strip turned by {:g}°: relative RMSE", name, turn), 100.0 * floor.Error(), "%"});
+      double& largest = worst[brdf == Brdf::kPhong ? 0 : 1];
+      largest = std::max(largest, floor.Error());
+      if (turn > 0.0) continue;
+      ClaimCurve his{name + ", drobot@published", {}}, truth{name + ", truth", {}};
+      for (int row = 0; row < kFloorRows; ++row) {
+        const auto i = static_cast<std::size_t>(row * kFloorColumns + kFloorColumns / 2);
+        const double distance = 1.5 - (-1.8 + 3.2 * row / (kFloorRows - 1));
+        his.points.emplace_back(distance, floor.his[i]);
+        truth.points.emplace_back(distance, floor.truth[i]);
+      }
+      found.plot.curves.push_back(his);
+      found.plot.curves.push_back(truth);
+    }
+  }
+  found.verdict = worst[1] > 1.5 * worst[0] ? Verdict::kHolds : worst[1] > 1.1 * worst[0] ? Verdict::kPartly : Verdict::kFails;
+  found.note = "Across the view a Blinn-Phong lobe is drawn out over several strips: he takes one point and a round cone, so the streak is cut off short and as much brighter.";
+  return found;
+}
+
+Finding SquaresAreBearable(ClaimBench& bench) {
+  Finding found;
+  double worst[2] = {0.0, 0.0};
+  for (const bool strip : {true, false}) {
+    for (const double turn : {0.0, 45.0, 90.0}) worst[strip] = std::max(worst[strip], ShadeFloor(bench, Brdf::kBlinnPhong, strip, turn).Error());
+  }
+  found.figures = {{"a strip of 1.6 × 0.2 m, at its worst turn: relative RMSE", 100.0 * worst[1], "%"}, {"a square as large", 100.0 * worst[0], "%"}};
+  found.verdict = worst[0] < worst[1] / 1.5 ? Verdict::kHolds : worst[0] < worst[1] ? Verdict::kPartly : Verdict::kFails;
+  return found;
+}
+
 }  // namespace
 
 ClaimSource DrobotClaims() {
@@ -108,6 +193,10 @@ ClaimSource DrobotClaims() {
             "arealab claims --source drobot", ClosestPointsAreAccurate},
            {"§ 1.3.3", "Without the closest points, by p' and p'' alone, the error is more than 0.15, and good enough.", "the irradiance is off by 0.15 to 0.3; partly where by more",
             "arealab claims --source drobot", TheShortcutIsWorse},
+           {"§ 1.5", "With a Blinn-Phong lobe a rectangle shows artefacts that it does not show with Phong's: he ships rectangles with Phong alone.", "a strip's reflection is off by half as much again, at its worst turn, as with Phong; partly by a tenth",
+            "arealab claims --source drobot", PhongAloneForRectangles},
+           {"§ 1.6", "They are bearable where the rectangle is close to a square.", "a square is off by less than two thirds of what the strip is, with Blinn-Phong",
+            "arealab claims --source drobot", SquaresAreBearable},
            {"§ 1.3.3", "The disparity shows mostly where the light points away from the surface's normal.", "the error there is more than a quarter larger",
             "arealab claims --source drobot", WorseForLightsThatFaceAway},
            {"§ 1.4.2", "A sphere's diffuse integral has a closed form in its place and radius.", "it is exact to 1e-5", "arealab stress --technique drobot", SphereIsClosed},

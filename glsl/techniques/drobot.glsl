@@ -1,7 +1,7 @@
 /*---
 summary = "One representative point for the diffuse lobe, one at the middle of the light's part in the lobe's cone for the specular"
 citation = "Drobot 2014"
-author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with the light's solid angle, as Lagarde & de Rousiers 2014 read it too, because only so does his stated error come out (eq. 1.16 by the word, its dA the whole light's, is extent=area and several times too bright near a light); the shipped point=halfway brought onto the light, without which a small light's place would not matter; cone=threshold, his cone's rule, by eq. 1.18 for Phong and Blinn-Phong, at the same 1/e for the others, which he names without a formula; his sphere's diffuse in closed form. Ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, no form factor above 1, no specular solid angle above the cone's own, cone=energy. point=plane is his pseudo code by the word. He shipped rectangles with a Phong lobe only, because of artefacts with Blinn-Phong; footprint=elongated is what he proposes for them (§1.6), its sides derived by us. Textures by his look-ups of eqs. 1.24 and 1.28, each over the same integral of a white light, stored in mip levels as he shipped them: diffuse by distance at the diffuse point, specular by the cone's radius on the light (his g') at the middle of its part, always of Phong's lobe"
+author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with the light's solid angle, as Lagarde & de Rousiers 2014 read it too, because only so does his stated error come out (eq. 1.16 by the word, its dA the whole light's, is extent=area and several times too bright near a light); the shipped point=halfway brought onto the light, without which a small light's place would not matter; cone=threshold, his cone's rule, by eq. 1.18 for Phong and Blinn-Phong, at the same 1/e for the others, which he names without a formula; his sphere's diffuse in closed form. Ours: the skew where the surface faces away from the light's plane, the cone's tilt where the mirror direction does, excess=cut, cone=energy. point=plane+bisector=sum is his pseudo code by the word. He shipped rectangles with a Phong lobe only, because of artefacts with Blinn-Phong; footprint=elongated is what he proposes for them (§1.6), its sides derived by us. Textures by his look-ups of eqs. 1.24 and 1.28, each over the same integral of a white light, stored in mip levels as he shipped them: diffuse by distance at the diffuse point, specular by the cone's radius on the light (his g') at the middle of its part, always of Phong's lobe"
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
@@ -14,7 +14,15 @@ summary = "which point stands for the diffuse light"
 choices = [
   ["closest", "between the points of the light closest to both maxima (his accurate form, stated error 0.05)"],
   ["halfway", "between both maxima on the light's plane, then the closest point of the light (his shipped form, stated error 0.15)"],
-  ["plane", "between both maxima on the light's plane, on the light or not (his pseudo code by the word)"],
+  ["plane", "between both maxima on the light's plane, on the light or not (his pseudo code)"],
+]
+
+[[option]]
+name = "bisector"
+summary = "the halfway vector to the diffuse point"
+choices = [
+  ["unit", "of unit vectors, as his eq. 1.9 has halfway vectors and Lagarde & de Rousiers 2014 this one"],
+  ["sum", "of the vectors as they come, as his pseudo code is printed: the middle between both points"],
 ]
 
 [[option]]
@@ -41,10 +49,19 @@ choices = [
   ["elongated", "as long and wide as the lobe, clipped by the rectangle's sides, its centre of area (his further research)", { shape = "rectangle" }],
 ]
 
+[[option]]
+name = "excess"
+summary = "what the one point makes of the light beyond what can be"
+choices = [
+  ["cut", "a form factor above 1, and a part of the light above its cone's own solid angle, are cut (ours)"],
+  ["kept", "kept: he accepts overestimation"],
+]
+
 [published]
 point = "halfway"
 extent = "solid_angle"
 cone = "threshold"
+excess = "kept"
 
 [[departs]]
 law = "point_limit"
@@ -78,6 +95,7 @@ error = 0.35
 why = "each half has its own point and overlap"
 ---*/
 #include "brdf.glsl"
+#include "bisector"
 #include "elongated_footprint.glsl"
 #include "importance_cone.glsl"
 #include "light_texture.glsl"
@@ -96,8 +114,6 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #else
   float cone_versine = ThresholdConeVersine(surface.alpha);
 #endif
-  // No part of the light within the cone is larger than the cone, nor than what lies above the horizon.
-  float cone_solid_angle = 2.0 * kPi * min(cone_versine, 1.0);
 
 #if EFFECT_SPHERE
   if (light.shape == SHAPE_SPHERE) {
@@ -186,10 +202,13 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     vec3 to_point = vec3(diffuse_point - foot, -point.z);
     float inverse_distance = inversesqrt(dot(to_point, to_point));
 #if EXTENT_AREA
-    solid_angle = min(light.area * point.z * inverse_distance * inverse_distance * inverse_distance, 2.0 * kPi);
+    solid_angle = light.area * point.z * inverse_distance * inverse_distance * inverse_distance;
 #endif
-    float cos_surface = max(dot(local.normal, to_point) * inverse_distance, 0.0);
-    result.diffuse = surface.diffuse_albedo * min(cos_surface * solid_angle / kPi, 1.0);
+    float form_factor = max(dot(local.normal, to_point) * inverse_distance, 0.0) * solid_angle / kPi;
+#if EXCESS_CUT
+    form_factor = min(form_factor, 1.0);
+#endif
+    result.diffuse = surface.diffuse_albedo * form_factor;
 
 #if EFFECT_TEXTURED
     float blur = BlurLevel(dot(to_point, to_point) / light.area);
@@ -199,7 +218,11 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     vec3 to_part = vec3(footprint.offset + part.shift, -point.z);
     inverse_distance = inversesqrt(dot(to_part, to_part));
     solid_angle = part.area * point.z * inverse_distance * inverse_distance * inverse_distance;
-    result.specular = SpecularLobe(local, view, to_part * inverse_distance) * min(solid_angle, cone_solid_angle);
+#if EXCESS_CUT
+    // No part of the light within the cone is larger than the cone, nor than what lies above the horizon.
+    solid_angle = min(solid_angle, 2.0 * kPi * min(cone_versine, 1.0));
+#endif
+    result.specular = SpecularLobe(local, view, to_part * inverse_distance) * solid_angle;
 #if EFFECT_TEXTURED
     blur = BlurLevel(footprint.radius * footprint.radius / light.area);
     result.specular *= SampleLayer(light_phong, vec3(TextureCoordinates(light, footprint.center + part.shift), light.image.x), blur).rgb;

@@ -1,10 +1,10 @@
 /*---
 summary = "The rectangle clipped to a rectangle; its solid angle along an average direction; the lobe as a glossiness cone"
 citation = "Mayaux 2017"
-author_note = "'Adding Area Lights': the fake clipping both ways round, rho/pi (n.w) times the clipped rectangle's solid angle along its average direction, specular as the BRDF's integral times the mean radiance within the glossiness cone, faded round the light's border as his look-up fades. rho/pi, counted twice in its eq. 1, is counted once here, and the radiance of the specular is a mean. The article has no formula for three of its parts; ours: the average direction (published: to the clipped rectangle's centre, as his test project has it; default: the mean over its solid angle), the cone (as wide as conserves the lobe's energy), and the BRDF's integral (the lobe's whole energy, by a fit, times the cone's share that the rectangle covers, Fresnel split off). The diffuse lobe has no Fresnel term in the scenes: his F' is coupling=fresnel, as 1 - F. His Ward is not a BRDF of the project yet. Textures by mip levels of the look-up's size, as his SampleAreaLight has them; alpha multiplies the texel in both lobes, as it does what the scene emits (his in the diffuse alone). No average tells where in a lobe a small light is: its shape is a plateau"
+author_note = "'Adding Area Lights': the fake clipping both ways round, rho/pi (n.w) times the clipped rectangle's solid angle along its average direction, specular as the BRDF's integral times the mean radiance within the glossiness cone, faded round the light's border as his look-up fades, Ward's lobe or GGX's. rho/pi, counted twice in its eq. 1, is counted once here, and the radiance of the specular is a mean. The article has no formula for three of its parts; ours: the average direction (published: to the clipped rectangle's centre, as his test project has it; default: the mean over its solid angle), the cone (as wide as conserves the lobe's energy), the BRDF's integral (the lobe's whole energy, by a fit, times the cone's share that the rectangle covers, Fresnel split off). The diffuse lobe has no Fresnel term in the scenes: his F' is coupling=fresnel, as 1 - F. Nothing holds his form factor below 1: near the light it is up to 2. Textures by mip levels of the look-up's size, as his SampleAreaLight has them. No average tells where in a lobe a small light is: its shape is a plateau"
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
-brdfs = ["ggx"]
+brdfs = ["ggx", "ward"]
 effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["point_limit", "mirror_limit"]
 
@@ -32,10 +32,19 @@ choices = [
   ["fresnel", "1 - F towards the average direction (his F')"],
 ]
 
+[[option]]
+name = "alpha"
+summary = "What the transparency of a textured light dims"
+choices = [
+  ["both", "both lobes: what the scene emits"],
+  ["diffuse", "the diffuse lobe alone, the colours' mean and alpha's each by itself (his)"],
+]
+
 [published]
 segment = "printed"
 average = "center"
 coupling = "none"
+alpha = "diffuse"
 
 [[departs]]
 law = "point_limit"
@@ -71,16 +80,22 @@ why = "each half fades by itself at its border"
 #include "polygon.glsl"
 #include "representative_point.glsl"
 #include "solid_angle.glsl"
-#include "specular_albedo.glsl"
+#include "specular_albedo"
 #include "vector_form_factor.glsl"
 #include "lit.glsl"
 
 #if EFFECT_TEXTURED
-// The texture's mean over about the rectangle center ± half_size (m, from the light's centre), by one trilinear look-up.
-vec3 MipTexel(Light light, vec2 center, vec2 half_size) {
+// The texture's mean over about the rectangle center ± half_size (m, from the light's centre), by one trilinear look-up; w: alpha, where
+// the colours are without it.
+vec4 MipTexel(Light light, vec2 center, vec2 half_size) {
   vec2 delta_uv = 0.5 * half_size / light.half_size;
   float radius = 128.0 * 0.5 * (delta_uv.x + delta_uv.y);  // texels of level 0
-  return SampleLayer(light_means, vec3(TextureCoordinates(light, center), light.image.x), log2(1e-4 + radius)).rgb;
+  vec3 place = vec3(TextureCoordinates(light, center), light.image.x);
+#if ALPHA_DIFFUSE
+  return SampleLayer(light_straight, place, log2(1e-4 + radius));
+#else
+  return SampleLayer(light_means, place, log2(1e-4 + radius));
+#endif
 }
 #endif
 
@@ -114,11 +129,15 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   seen.small = dot(half_size, half_size) < kSmallRectangle * dot(from_center, from_center);
   VectorFormFactor mean = LambertVector(seen);
   vec3 average = mean.f * inversesqrt(max(dot(mean.f, mean.f), 1e-30));
-  float form_factor = max(mean.height, 0.0);
+  float form_factor = clamp(mean.height, 0.0, 1.0);
 #endif
-  result.diffuse = surface.diffuse_albedo * light.radiance * min(form_factor, 1.0);
+  result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
 #if EFFECT_TEXTURED
-  result.diffuse *= MipTexel(light, center, half_size);
+  vec4 texel = MipTexel(light, center, half_size);
+#if ALPHA_DIFFUSE
+  result.diffuse *= texel.w;
+#endif
+  result.diffuse *= texel.rgb;
 #endif
 #if COUPLING_FRESNEL
   vec3 sum = average + view;
@@ -132,7 +151,8 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   Footprint cone = ConeFootprint(from_center, mirror, EnergyConeVersine(surface.alpha, n_dot_v), true);
   if (!Lit(cone.radius > 0.0)) return result;
   vec2 nearest = ClosestOnRectangle(cone.center, half_size);
-  float outside = min(length(cone.center - nearest) / cone.radius, 1.0);
+  // Over the trace's radius and, as his listing has it, a thousandth of the light's sides.
+  float outside = min(length((cone.center - nearest) / (vec2(cone.radius) + 2e-3 * light.half_size)), 1.0);
   float fade = 1.0 - outside * outside * (3.0 - 2.0 * outside);
   cone.center = nearest;
   float share = FootprintOnRectangle(cone, half_size).area / (kPi * cone.radius * cone.radius);
@@ -144,7 +164,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #endif
   result.specular = reflectance * light.radiance * (min(share, 1.0) * fade);
 #if EFFECT_TEXTURED
-  result.specular *= MipTexel(light, center + cone.center, vec2(cone.radius));
+  result.specular *= MipTexel(light, center + cone.center, vec2(cone.radius)).rgb;
 #endif
   return result;
 }

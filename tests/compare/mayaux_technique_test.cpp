@@ -6,6 +6,10 @@
 
 #include "tests/compare/technique_laws.h"
 
+#include "glsl/dual_begin.h"
+#include "glsl/specular_albedo.glsl"
+#include "glsl/dual_end.h"
+
 namespace arealab::mayaux_technique_test {
 namespace {
 
@@ -88,6 +92,34 @@ TEST_F(MayauxTechnique, SmoothSurfaceMirrors) {
     for (const Shaded& shaded : points_->Shade(name, hit)) EXPECT_NEAR(shaded.specular, 1.0, 1e-2) << name;
     for (const Shaded& shaded : points_->Shade(name, missed)) EXPECT_EQ(shaded.specular, 0.0) << name;
   }
+}
+
+// Outside the light the trace fades by his smoothstep over its radius and a thousandth of the light's side; on the border half of the
+// square of its area is covered. At normal incidence the trace's radius over a height of 1 is 2 alpha.
+TEST_F(MayauxTechnique, FadesAsHisListing) {
+  std::vector<PointCase> cases;
+  constexpr double kRadius = 2.0 * 0.3 * 0.3, kHalf = 0.5;
+  for (int i = 0; i <= 24; ++i) {
+    PointCase c;
+    c.roughness = 0.3;
+    c.half_size = glm::dvec2(kHalf);
+    c.center.x = kHalf + kRadius * i / 20.0;
+    cases.push_back(c);
+  }
+  const std::vector<Shaded> shaded = points_->Shade("mayaux@published", cases, Precision::kDouble);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const double x = std::min((cases[i].center.x - kHalf) / (kRadius + 2e-3 * kHalf), 1.0);
+    EXPECT_NEAR(shaded[i].specular / shaded[0].specular, 1.0 - x * x * (3.0 - 2.0 * x), 1e-6) << i;
+  }
+  EXPECT_NEAR(shaded[0].specular, 0.5 * dual::SpecularAlbedo(1.0, 0.3).x, 1e-6);
+}
+
+// Nothing holds his form factor below 1: the cosine of one direction times a solid angle, near a wide light's middle 2π.
+TEST_F(MayauxTechnique, PublishedFormFactorIsUpToTwo) {
+  PointCase c;
+  c.half_size = glm::dvec2(1000.0);
+  EXPECT_NEAR(points_->Shade(kPublished, {c})[0].diffuse, 2.0, 0.01);
+  EXPECT_NEAR(points_->Shade("mayaux", {c})[0].diffuse, 1.0, 1e-4);
 }
 
 // F' = 1 − F: a perfect mirror has no diffuse lobe, and at normal incidence F is F0.

@@ -62,7 +62,7 @@ class TexturedTechniques : public testing::Test {
 // What is the same all over leaves every technique as it is without a texture, but for its brightness: whatever filter, level and
 // border. The reference has another rule for textures.
 TEST_F(TexturedTechniques, OfAConstantAreThePlainOnes) {
-  const Scene plain = FacingLight(nullptr), half = FacingLight(std::make_shared<Image>(Image{3, 2, std::vector<glm::vec4>(6, glm::vec4(0.5f))}));
+  const Scene plain = FacingLight(nullptr), half = FacingLight(std::make_shared<Image>(Image{3, 2, std::vector<glm::vec4>(6, glm::vec4(0.5f, 0.5f, 0.5f, 1.0f))}));
   int claims = 0;
   for (const Variant& variant : AllVariants(techniques_)) {
     if (WhyUnsupported(variant, half)) continue;
@@ -111,6 +111,21 @@ TEST_F(TexturedTechniques, MonteCarloIsUnbiased) {
   }
   EXPECT_LT(CompareImages(sum, TotalRadiance(truth), 24).rel_rmse, 0.02);
   EXPECT_LT(std::abs(CompareImages(sum, TotalRadiance(truth), 24).bias), 0.003);
+}
+
+// Half transparent all over: half the light, of both lobes; as Mayaux's listing samples, of the diffuse alone.
+TEST_F(TexturedTechniques, AlphaDimsTheDiffuseAlone) {
+  const auto white = std::make_shared<Image>(Image{2, 2, std::vector<glm::vec4>(4, glm::vec4(1.0f))}),
+             half = std::make_shared<Image>(Image{2, 2, std::vector<glm::vec4>(4, glm::vec4(0.5f))});
+  for (const auto& [name, specular] : {std::pair("mayaux", 0.5f), std::pair("mayaux+alpha=diffuse", 1.0f), std::pair("mayaux@published", 1.0f)}) {
+    const Variant variant = ParseVariant(techniques_, name);
+    RadianceImage expected = Shade(FacingLight(white), variant);
+    const RadianceImage seen = Shade(FacingLight(half), variant);
+    for (glm::vec3& pixel : expected.diffuse) pixel *= 0.5f;
+    for (glm::vec3& pixel : expected.specular) pixel *= specular;
+    EXPECT_LT(Error(seen.diffuse, expected.diffuse), 1e-6) << name;
+    EXPECT_LT(Error(seen.specular, expected.specular), 1e-6) << name;
+  }
 }
 
 // Two lights, two textures, a plain one between: each its own.

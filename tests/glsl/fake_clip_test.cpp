@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "glsl/dual_begin.h"
@@ -51,16 +52,58 @@ double ExactArea(const dvec3& point, const dvec3& normal, const dvec2& half) {
 TEST(FakeClip, SegmentAsDocumentedAndAsPrinted) {
   const dvec2 p0(0.0), p1(1.0, 0.0);
   // Cut: short of the crossing by the inset. Both above: the end.
-  EXPECT_NEAR(dual::documented::ClipSegment(p0, p1, 1.0, -1.0, 1e-3).x, 0.499, 1e-12);
-  EXPECT_NEAR(dual::printed::ClipSegment(p0, p1, 1.0, -1.0, 1e-3).x, 0.499, 1e-12);
-  EXPECT_EQ(dual::documented::ClipSegment(p0, p1, 1.0, 2.0, 1e-3), p1);
-  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, 1.0, 2.0, 1e-3), p1);
+  EXPECT_NEAR(dual::documented::ClipSegment(p0, p1, 1.0, -2.0, 1e-3).x, 0.499, 1e-12);
+  EXPECT_NEAR(dual::printed::ClipSegment(p0, p1, 1.0, -2.0, 1e-3).x, 0.499, 1e-12);
+  EXPECT_EQ(dual::documented::ClipSegment(p0, p1, 1.0, 1.0, 1e-3), p1);
+  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, 1.0, 1.0, 1e-3), p1);
   // Both below: the start, says the comment; the listing only where the side falls.
-  EXPECT_EQ(dual::documented::ClipSegment(p0, p1, -1.0, -2.0, 1e-3), p0);
-  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, -1.0, -2.0, 1e-3), p0);
-  EXPECT_EQ(dual::documented::ClipSegment(p0, p1, -2.0, -1.0, 1e-3), p0);
-  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, -2.0, -1.0, 1e-3), p1);
-  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, -1.0, -1.0, 1e-3), p1);
+  EXPECT_EQ(dual::documented::ClipSegment(p0, p1, -1.0, -1.0, 1e-3), p0);
+  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, -1.0, -1.0, 1e-3), p0);
+  EXPECT_EQ(dual::documented::ClipSegment(p0, p1, -2.0, 1.0, 1e-3), p0);
+  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, -2.0, 1.0, 1e-3), p1);
+  EXPECT_EQ(dual::printed::ClipSegment(p0, p1, -1.0, 0.0, 1e-3), p1);
+}
+
+// The article's listing, line by line, with HLSL's rules for a level side: a clamped NaN is 0, and a mix by 0 takes its first. What its
+// rise of 0 is signed, which the listing leaves to the hardware, is taken as +.
+dvec3 ListedSegment(const dvec3& p0, const dvec3& p1, const dvec3& plane_position, const dvec3& plane_normal) {
+  const dvec3 v = p1 - p0, to_plane = plane_position - p0;
+  const double d = glm::dot(to_plane, plane_normal), t = d / (glm::dot(v, plane_normal) + 0.0);
+  const auto saturate = [](double x) { return x > 0.0 ? std::min(x, 1.0) : 0.0; };
+  return d > 0.0 || t >= 0.0 ? p0 + saturate(t - 1e-3) * v : p1;
+}
+glm::dvec4 ListedClipping(const dvec3& position, const dvec3& normal, const dvec2& scale) {
+  const double x0 = scale.x * (normal.x < 0.0 ? -1.0 : 1.0), y0 = scale.y * (normal.y < 0.0 ? -1.0 : 1.0);
+  const dvec3 p0(x0, y0, 0.0), p1(-x0, y0, 0.0), p2(-x0, -y0, 0.0), p3(x0, -y0, 0.0);
+  dvec2 low(100.0), high(-100.0);
+  for (const auto& round : {std::vector{p1, p2, p3, p0}, std::vector{p3, p2, p1, p0}}) {
+    dvec3 p = p0;
+    for (const dvec3& to : round) {
+      p = ListedSegment(p, to, position, normal);
+      low = glm::min(low, dvec2(p)), high = glm::max(high, dvec2(p));
+    }
+  }
+  return {low, high};
+}
+
+TEST(FakeClip, PrintedIsTheListing) {
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int cut = 0;
+  for (int i = 0; i < 50000; ++i) {
+    const dvec2 half(1.5 + uniform(engine), 1.5 + uniform(engine));
+    const dvec3 point(3.0 * uniform(engine), 3.0 * uniform(engine), 1.001 + uniform(engine));
+    dvec3 normal(uniform(engine), uniform(engine), uniform(engine));
+    if (i % 11 == 0) normal.x = 0.0;  // level sides
+    if (i % 13 == 0) normal.y = 0.0;
+    normal = glm::normalize(normal);
+    const glm::dvec4 listed = ListedClipping(point, normal, half);
+    const auto clipped = dual::printed::ClipToRectangle(point, normal, half);
+    ASSERT_LT(glm::length(listed - glm::dvec4(clipped.low, clipped.high)), 1e-11) << i;
+    const double share = Area(clipped) / (4.0 * half.x * half.y);
+    cut += share > 0.0 && share < 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(cut, 10000);
 }
 
 // A light below a horizon that is parallel to it keeps its whole area as printed, none as documented.

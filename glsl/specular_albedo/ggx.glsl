@@ -1,0 +1,2 @@
+// Dual; see specular_albedo.glsl.
+#include "specular_albedo.glsl"
