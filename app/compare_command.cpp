@@ -232,7 +232,7 @@ void AddCompare(CLI::App& app, int& status, const std::string& command_line) {
   command->add_option("--limit", arguments->limits,
                       "METRIC=X: exit with status 1 where a variant's total error exceeds X, e.g. rel_rmse=0.05");
   command->add_flag("--split", arguments->split,
-                    "say whose error it is, in results.json: the mathematics', its shortcuts' or rounding's");
+                    "say whose error it is: the mathematics', its shortcuts' or rounding's; of LTC cause by cause");
   command->add_flag("--hard-cases", arguments->hard_cases,
                     "add the page of the hard cases: each technique's default form by families (a minute or two, then cached)");
   command->add_flag("--timing", arguments->timing,

@@ -11,6 +11,7 @@
 #include "compare/aperture_cache.h"
 #include "compare/explain.h"
 #include "compare/flip.h"
+#include "compare/ltc_split.h"
 #include "compare/metrics.h"
 #include "compare/timing.h"
 #include "compare/truth_cache.h"
@@ -187,17 +188,44 @@ std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pi
 
 namespace {
 
-ErrorSplit SplitError(Renderer& renderer, const Variant& variant, const RadianceImage& image, const RadianceImage& truth) {
-  const RadianceImage in_double = renderer.Shade(variant, Precision::kDouble),
-                      ideal = renderer.Shade(IdealVariant(variant), Precision::kDouble);
-  const std::vector<glm::vec3> lit = TotalRadiance(truth);
+// At least over this, relative errors in a picture: 1 % of the mean of what is lit.
+double RelativeFloor(const std::vector<glm::vec3>& truth) {
   double mean = 0.0;
   std::size_t count = 0;
-  for (const glm::vec3& v : lit) {
+  for (const glm::vec3& v : truth) {
     mean += Luminance(v);
     count += v != glm::vec3(0.0f);
   }
-  const double floor = std::max(0.01 * mean / static_cast<double>(std::max<std::size_t>(count, 1)), 1e-30);
+  return std::max(0.01 * mean / static_cast<double>(std::max<std::size_t>(count, 1)), 1e-30);
+}
+
+std::vector<ErrorSplit::Cause> DescribeCauses(const std::vector<CausePicture>& pictures, const RadianceImage& truth) {
+  const std::vector<glm::vec3> reference = TotalRadiance(truth);
+  const double floor = RelativeFloor(reference);
+  double sum = 0.0, squares = 0.0;
+  for (const glm::vec3& t : reference) {
+    sum += static_cast<double>(t.x + t.y + t.z);
+    squares += static_cast<double>(glm::dot(t, t));
+  }
+  std::vector<ErrorSplit::Cause> causes;
+  for (const CausePicture& picture : pictures) {
+    ErrorSplit::Cause& cause = causes.emplace_back(ErrorSplit::Cause{picture.name, 0.0, 0.0, {}});
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+      const glm::dvec3& e = picture.error[i];
+      cause.rel_rmse += glm::dot(e, e);
+      cause.bias += e.x + e.y + e.z;
+      cause.relative.push_back(static_cast<float>(Luminance(glm::vec3(e)) / std::max(static_cast<double>(Luminance(reference[i])), floor)));
+    }
+    cause.rel_rmse = std::sqrt(cause.rel_rmse / squares);
+    cause.bias /= sum;
+  }
+  return causes;
+}
+
+ErrorSplit SplitError(Renderer& renderer, const Variant& variant, const RadianceImage& image, const RadianceImage& truth) {
+  const RadianceImage in_double = renderer.Shade(variant, Precision::kDouble),
+                      ideal = renderer.Shade(IdealVariant(variant), Precision::kDouble);
+  const double floor = RelativeFloor(TotalRadiance(truth));
   ErrorSplit split;
   const auto part = [&](const char* name, const RadianceImage& a, const RadianceImage& b) {
     const std::vector<glm::vec3> first = TotalRadiance(a), second = TotalRadiance(b);
@@ -288,6 +316,9 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
       VariantResult row = Describe(variant, scene);
       if (row.supported) row.image = std::make_shared<const RadianceImage>(renderer.Shade(variant));
       if (row.supported && options.split) row.split = SplitError(renderer, variant, *row.image, truth.radiance);
+      if (row.supported && options.split && !WhyNoCauses(variant, scene)) {
+        row.split.causes = DescribeCauses(SplitByCause(renderer, library, variant, scene, options.size, *row.image, truth.radiance, options.truth, options.cache), truth.radiance);
+      }
       result.variants.push_back(std::move(row));
     }
     if (options.cost) report("cycles", 0.7);

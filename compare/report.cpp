@@ -260,6 +260,25 @@ void WriteSplitMaps(const fs::path& images, const std::string& stem, const Error
     }
     WriteText(images / fmt::format("{}-{}.png", stem, map.name), PngBytes(pixels, columns));
   }
+  // By cause, signed: on each side of 0 logarithmic from 1e-6 to 1; of each square the pixel that is farthest from 0.
+  for (const ErrorSplit::Cause& cause : split.causes) {
+    const int rows = static_cast<int>(cause.relative.size()) / width / block;
+    std::vector<Rgb> pixels;
+    for (int i = 0; i < rows * columns; ++i) {
+      double most = 0.0;
+      bool finite = true;
+      for (int y = i / columns * block; y < (i / columns + 1) * block; ++y) {
+        for (int x = i % columns * block; x < (i % columns + 1) * block; ++x) {
+          const auto e = static_cast<double>(cause.relative[static_cast<std::size_t>(y * width + x)]);
+          finite = finite && std::isfinite(e);
+          if (std::abs(e) > std::abs(most)) most = e;
+        }
+      }
+      const double tone = std::clamp(1.0 + std::log10(std::max(std::abs(most), 1e-6)) / 6.0, 0.0, 1.0);
+      pixels.push_back(finite ? Color(kSigned, 0.5 + std::copysign(0.5 * tone, most)) : Rgb{255, 0, 255});
+    }
+    WriteText(images / fmt::format("{}-cause-{}.png", stem, cause.name), PngBytes(pixels, columns));
+  }
 }
 
 // Steps of sixteen in half bits between the shadowed truth and the unshadowed one: at most eight bits' error,

@@ -22,6 +22,7 @@ void CheckReportDirectory(const std::filesystem::path& directory);
 //   ground truth images/SCENE/VARIANT.png the picture at the scene's exposure, emitters included
 //   plots/SCENE.svg, plots/all scenes.svg  accuracy against cost, where a cost is known (compare/pareto.h)
 //   images/SCENE/VARIANT-model.png, -approximation.png, -rounding.png  where the error was split
+//   images/SCENE/VARIANT-cause-fit.png, …  the same of LTC's variants by cause
 //   claims-SOURCE.html       what each source says and whether it holds (compare/claims.h)
 //   hard-cases.html          techniques by hard families (compare/stress_page.h)
 //   data/SCENE/VARIANT.js    what the page loads: the same values as the EXR's

@@ -62,6 +62,12 @@ Json SavingJson(const std::optional<Saving>& saving) {
   return json;
 }
 
+Json CausesJson(const ErrorSplit& split) {
+  Json json = Json::array();
+  for (const ErrorSplit::Cause& cause : split.causes) json.push_back({{"name", cause.name}, {"rel_rmse", Number(cause.rel_rmse)}, {"bias", Number(cause.bias)}});
+  return json;
+}
+
 Json VariantJson(const VariantResult& variant) {
   Json json;
   json["name"] = variant.name;
@@ -79,7 +85,8 @@ Json VariantJson(const VariantResult& variant) {
                    {"split",
                     {{"model", Number(variant.split.model)},
                      {"approximation", Number(variant.split.approximation)},
-                     {"rounding", Number(variant.split.rounding)}}}};
+                     {"rounding", Number(variant.split.rounding)},
+                     {"causes", CausesJson(variant.split)}}}};
   json["time"] = TimeJson(variant.time);
   json["saving"] = SavingJson(variant.saving);
   json["isa"] = IsaObject(variant.isa);
@@ -155,6 +162,7 @@ void SceneResult::ReleaseImages() {
   for (VariantResult& variant : variants) {
     variant.image.reset();
     variant.split.maps.clear();
+    for (ErrorSplit::Cause& cause : variant.split.causes) cause.relative.clear();
   }
 }
 
@@ -303,6 +311,17 @@ std::string SummaryTable(const SceneResult& scene) {
     rows.back().push_back(remark);
   }
   std::string text = fmt::format("{}: {}\n{}", scene.name, scene.question, AlignedTable(rows));
+  std::vector<std::vector<std::string>> causes;
+  for (const VariantResult* v : order) {
+    if (v->split.causes.empty()) continue;
+    if (causes.empty()) {
+      causes.push_back({"by cause, %"});
+      for (const ErrorSplit::Cause& cause : v->split.causes) causes[0].push_back(cause.name);
+    }
+    causes.push_back({v->short_name});
+    for (const ErrorSplit::Cause& cause : v->split.causes) causes.back().push_back(fmt::format("{:.2g}", 100.0 * cause.rel_rmse));
+  }
+  if (!causes.empty()) text += AlignedTable(causes);
   for (const VariantResult* v : order) {  // one reason holds for all
     if (v->time.refusal.empty()) continue;
     text += fmt::format("  net of the pass-through refused: {}\n", v->time.refusal);

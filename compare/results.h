@@ -61,6 +61,13 @@ struct ErrorSplit {
     std::vector<float> magnitude;
   };
   std::vector<Map> maps = {};
+  // Of LTC's variants cause by cause as well (compare/ltc_split.h), in its order, the remainder last.
+  struct Cause {
+    std::string name;
+    double rel_rmse = kNotMeasured, bias = kNotMeasured;  // the part's root of Σ² over the truth's; its sum over the truth's: these add up
+    std::vector<float> relative;  // signed, of luminance, over the truth's, at least over 1 % of its mean
+  };
+  std::vector<Cause> causes = {};
 };
 
 // What is saved by simulating only the effects that the scene calls for.

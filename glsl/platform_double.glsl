@@ -37,7 +37,8 @@ dvec4 SampleTable(sampler2D table, dvec2 uv) {
 dvec3 FetchLayer(sampler2DArray map, ivec3 texel, int level) { return dvec3(texelFetch(map, texel, level).rgb); }
 
 dvec4 SampleLayerOnce(sampler2DArray map, dvec3 place, int level) {
-  ivec2 last = textureSize(map, level).xy - 1;
+  // Not textureSize(map, level): llvmpipe asks it once for pixels whose levels differ.
+  ivec2 last = max(textureSize(map, 0).xy >> level, ivec2(1)) - 1;
   int layer = int(place.z);
   dvec2 p = clamp(place.xy * dvec2(last + 1) - 0.5lf, dvec2(0.0lf), dvec2(last));
   ivec2 low = clamp(ivec2(p), ivec2(0), last);

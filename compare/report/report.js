@@ -635,13 +635,21 @@ function buildSplit(s) {
   const split = variantsOf(s).filter((v) => known(v.error.split.rounding));
   if (!split.length) return null;
   const said = { model: "ideal form against truth", approximation: "double against ideal form", rounding: "float against double" };
-  const bar = h("span", { class: "split-bar", style: { background: `linear-gradient(90deg, ${Array.from({ length: 17 }, (_, i) => css(magnitudeColor(i / 16))).join(", ")})` } });
+  const scale = (color) => h("span", { class: "split-bar", style: { background: `linear-gradient(90deg, ${Array.from({ length: 17 }, (_, i) => css(color(i / 16))).join(", ")})` } });
+  const file = (v, part) => `images/${encodeURIComponent(s.folder)}/${encodeURIComponent(v.stem)}-${part}.png`;
+  const causes = split.filter((v) => v.error.split.causes.length);
   return h("section", { id: "split", "aria-labelledby": "split-heading" },
     h("div", { class: "head" }, h("h3", { id: "split-heading", text: "Whose error it is" }),
-      h("p", { class: "note" }, "The mathematics', its shortcuts', rounding's: relative to the reference, the largest of each few pixels. ", h("span", { class: "unbroken" }, "1e-7 ", bar, " 1"))),
+      h("p", { class: "note" }, "The mathematics', its shortcuts', rounding's: relative to the reference, the largest of each few pixels. ", h("span", { class: "unbroken" }, "1e-7 ", scale(magnitudeColor), " 1"))),
     h("div", { class: "split card" }, split.map((v) => h("div", {}, h("b", { text: v.short_name || v.name }),
-      SPLIT.map((part) => h("figure", {}, h("img", { src: `images/${encodeURIComponent(s.folder)}/${encodeURIComponent(v.stem)}-${part}.png`, loading: "lazy", alt: `${part} error of ${v.short_name || v.name}` }),
-        h("figcaption", { text: `${part}: ${Number((100 * v.error.split[part]).toPrecision(2))} % (${said[part]})` })))))));
+      SPLIT.map((part) => h("figure", {}, h("img", { src: file(v, part), loading: "lazy", alt: `${part} error of ${v.short_name || v.name}` }),
+        h("figcaption", { text: `${part}: ${Number((100 * v.error.split[part]).toPrecision(2))} % (${said[part]})` })))))),
+    causes.length ? h("div", { class: "head" }, h("h3", { text: "Cause by cause" }),
+      h("p", { class: "note" }, "Of transformed cosines, signed, over the truth: what the fitted lobe misses, its table between the nodes, the horizon as it is treated, the edge's form, the texture's filter, float; and what is left of the whole. The percentages are each picture's root mean square over the truth's, in brackets its sum, and these add up. ",
+        h("span", { class: "unbroken" }, "−1 ", scale((t) => signedColor(2 * t - 1)), " 1"), ", logarithmic from 1e-6 on both sides.")) : null,
+    causes.length ? h("div", { class: "causes card" }, causes.map((v) => h("div", {}, h("b", { text: v.short_name || v.name }),
+      v.error.split.causes.map((cause) => h("figure", {}, h("img", { src: file(v, `cause-${cause.name}`), loading: "lazy", alt: `${cause.name} error of ${v.short_name || v.name}` }),
+        h("figcaption", { text: `${cause.name}: ${Number((100 * cause.rel_rmse).toPrecision(2))} % (${signed(Number((100 * cause.bias).toPrecision(2)).toString())})` })))))) : null);
 }
 
 function buildPairs(s) {

@@ -565,7 +565,7 @@ TEST(Report, SaysWhoseErrorItIsPixelByPixel) {
   SceneResult& scene = results.scenes[0];
   VariantResult& variant = scene.variants[0];
   const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
-  variant.split = {0.1, 1e-3, 1e-7, {}};
+  variant.split = {0.1, 1e-3, 1e-7};
   variant.split.maps = {{"model", std::vector<float>(pixels, 1.0f)}, {"approximation", std::vector<float>(pixels, 0.0f)},
                         {"rounding", std::vector<float>(pixels, std::numeric_limits<float>::quiet_NaN())}};
   results.hard_cases = {3, 1, 24000, "<html>the hard cases</html>\n"};
