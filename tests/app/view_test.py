@@ -566,7 +566,7 @@ class ViewTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM, FOLDER = sys.argv[1], Path(sys.argv[2])
+    PROGRAM, FOLDER = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
     reader, writer = os.pipe()
