@@ -33,12 +33,15 @@ nlohmann::ordered_json RatioJson(const Estimate& ratio) {
 }
 
 nlohmann::ordered_json AsJson(const Explanation& explanation) {
+  const Saving& saving = explanation.saving;
   nlohmann::ordered_json json = {{"variant", explanation.variant},
-                                 {"pruned_over_all", RatioJson(explanation.pruned_over_all)},
-                                 {"rounds", explanation.rounds},
+                                 {"pruned_over_all", RatioJson(saving.time)},
+                                 {"rounds", saving.rounds},
                                  {"cycles", nlohmann::ordered_json::object()},
+                                 {"per_pixel", nlohmann::ordered_json::object()},
                                  {"effects", nlohmann::ordered_json::array()}};
-  for (const auto& [gpu, cycles] : explanation.cycles) json["cycles"][gpu] = {{"pruned", cycles.first}, {"all", cycles.second}};
+  for (const auto& [gpu, cycles] : saving.cycles) json["cycles"][gpu] = {{"pruned", cycles.first}, {"all", cycles.second}};
+  for (const auto& [way, cost] : saving.per_pixel) json["per_pixel"][way] = {{"over_pruned", RatioJson(cost.time)}, {"cycles_over_pruned", cost.cycles}};
   for (const EffectPrice& price : explanation.effects) {
     json["effects"].push_back({{"name", price.effect.name},
                                {"on", price.effect.on},
@@ -49,6 +52,23 @@ nlohmann::ordered_json AsJson(const Explanation& explanation) {
                                {"cycles", price.cycles}});
   }
   return json;
+}
+
+// Which way to ask pixels for what they need pays, by renderer.
+std::string WhatPays(const Saving& saving) {
+  if (saving.per_pixel.empty()) return "";
+  std::map<std::string, std::pair<std::string, double>> best;  // by renderer, the cheapest way and its ratio
+  const auto offer = [&](const std::string& renderer, const std::string& way, double ratio, bool pays) {
+    auto& known = best.try_emplace(renderer, "", 1.0).first->second;
+    if (pays && ratio < known.second) known = {way, ratio};
+  };
+  for (const auto& [way, cost] : saving.per_pixel) {
+    offer("here", way, cost.time.value, cost.Pays());
+    for (const auto& [gpu, ratio] : cost.cycles) offer("on " + gpu, way, ratio, ratio < 1.0);
+  }
+  std::string text;
+  for (const auto& [renderer, way] : best) text += fmt::format("{}{} {}", text.empty() ? "  " : ", ", renderer, way.first.empty() ? "neither pays" : way.first + (way.first == "tiles" ? " pay" : " pays"));
+  return text + "\n";
 }
 
 std::string AsText(const Explanation& explanation, const std::vector<std::string>& gpus, bool prices) {
@@ -71,9 +91,14 @@ std::string AsText(const Explanation& explanation, const std::vector<std::string
     rows.push_back(std::move(row));
   }
   std::string text = AlignedTable(rows);
-  text += fmt::format("  time over that of every effect: {}, {} rounds", RatioText(explanation.pruned_over_all), explanation.rounds);
-  for (const auto& [gpu, cycles] : explanation.cycles) text += fmt::format("; {} {} of {} cycles", gpu, cycles.first, cycles.second);
-  return text + "\n";
+  const Saving& saving = explanation.saving;
+  text += fmt::format("  time over that of every effect: {}, {} rounds", RatioText(saving.time), saving.rounds);
+  for (const auto& [gpu, cycles] : saving.cycles) text += fmt::format("; {} {} of {} cycles", gpu, cycles.first, cycles.second);
+  for (const auto& [way, cost] : saving.per_pixel) {
+    text += fmt::format("\n  per pixel, {} over one program: time {}", way, RatioText(cost.time));
+    for (const auto& [gpu, ratio] : cost.cycles) text += fmt::format("; {} {:.2f} of its cycles", gpu, ratio);
+  }
+  return text + "\n" + WhatPays(saving);
 }
 
 void RunExplain(const ExplainArguments& arguments) {

@@ -115,6 +115,16 @@ struct CostMeter::Text {
   std::string who;  // for messages
 };
 
+// A text with the places that its figures go to.
+struct CostMeter::Entry {
+  Text text;
+  std::vector<std::uint32_t> words;
+  std::vector<ShaderCost> costs;                   // by GPU
+  std::vector<std::string> files, word_files;      // the costs under the text's name, and under the words'
+  const std::vector<ShaderCost>* found = nullptr;  // by whoever has the same words
+  std::vector<std::pair<std::size_t, std::string>> places;  // variant, "core", "full" or a path
+};
+
 struct CostMeter::Job {
   const Text* text;
   const std::vector<std::uint32_t>* words;  // SPIR-V
@@ -214,44 +224,8 @@ void CostMeter::Compile(std::span<const Job> jobs, const std::string& gpu) const
   throw InputError(fmt::format("{}, {}: {}; expected figures for it", gpu, jobs[std::min(done, jobs.size() - 1)].text->who, what));
 }
 
-std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibrary& library,
-                                                               const std::vector<Variant>& variants, const Scene& scene,
-                                                               const std::function<void(double)>& progress) const {
-  // Every text once, with the places that its figures go to.
-  struct Entry {
-    Text text;
-    std::vector<std::uint32_t> words;
-    std::vector<ShaderCost> costs;                   // by GPU
-    std::vector<std::string> files, word_files;         // the costs under the text's name, and under the words'
-    const std::vector<ShaderCost>* found = nullptr;  // by whoever has the same words
-    std::vector<std::pair<std::size_t, std::string>> places;  // variant, "core", "full" or a path
-  };
-  const std::vector<Effect> effects = SceneEffects(scene);
+void CostMeter::Find(const ShaderLibrary& library, std::vector<Entry>& entries, const std::function<void(double)>& progress) const {
   const Text vertex{Expand(library, "core.vert", {}, {}, Precision::kFloat), true, 0, "core.vert"};
-  std::vector<Entry> entries;
-  std::map<std::string, std::size_t> index;  // by text
-  const auto add = [&](std::size_t v, const std::string& place, const std::string& main, int targets,
-                       const std::vector<std::pair<std::string, int>>& defines) -> const std::string& {
-    Text text{Expand(library, main, variants[v], defines, Precision::kFloat, scene.brdf), false, targets,
-              fmt::format("{} ({})", variants[v].ShortName(), place)};
-    const auto [at, added] = index.emplace(text.source.text, entries.size());
-    if (added) entries.push_back({std::move(text), {}, {}, {}, {}, nullptr, {}});
-    entries[at->second].places.emplace_back(v, place);
-    return at->first;
-  };
-  for (std::size_t v = 0; v < variants.size(); ++v) {
-    if (WhyUnsupported(variants[v], scene, effects)) continue;
-    EffectDefines lit = Defines(effects, variants[v].effects);
-    lit.emplace_back("PATH_LIT", 1);
-    add(v, "full", "lighting.frag", 2, lit);
-    const std::string core = add(v, "core", "core.frag", 1, lit);
-    for (const Path& path : PathsOf(core)) {
-      auto defines = lit;
-      for (const std::string& define : path.defines) defines.emplace_back(define, 1);
-      add(v, path.name, "core.frag", 1, defines);
-    }
-  }
-
   const auto load = [&](Entry& entry, std::vector<std::string>& files, std::string_view vertex_key, std::string_view key) {
     entry.costs.resize(gpus_.size());
     bool known = true;
@@ -310,7 +284,51 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
       for (std::size_t g = 0; g < gpus_.size(); ++g) Store(entry->files[g], entry->costs[g]);
     }
   }
+}
 
+std::vector<std::map<std::string, ShaderCost>> CostMeter::MeasurePasses(const ShaderLibrary& library, const std::vector<ExpandedSource>& passes) const {
+  std::vector<Entry> entries;
+  for (const ExpandedSource& pass : passes) entries.push_back({{pass, false, 2, "a pass"}, {}, {}, {}, {}, nullptr, {}});
+  Find(library, entries, {});
+  std::vector<std::map<std::string, ShaderCost>> found(passes.size());
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    for (std::size_t g = 0; g < gpus_.size(); ++g) found[i][gpus_[g]] = entries[i].costs[g];
+  }
+  return found;
+}
+
+std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibrary& library,
+                                                               const std::vector<Variant>& variants, const Scene& scene,
+                                                               const std::function<void(double)>& progress) const {
+  const std::vector<Effect> effects = SceneEffects(scene);
+  std::vector<Entry> entries;  // every text once
+  std::map<std::string, std::size_t> index;  // by text
+  const auto add = [&](std::size_t v, const std::string& place, const std::string& main, int targets,
+                       const std::vector<std::pair<std::string, int>>& defines) -> const std::string& {
+    Text text{Expand(library, main, variants[v], defines, Precision::kFloat, scene.brdf), false, targets,
+              fmt::format("{} ({})", variants[v].ShortName(), place)};
+    const auto [at, added] = index.emplace(text.source.text, entries.size());
+    if (added) entries.push_back({std::move(text), {}, {}, {}, {}, nullptr, {}});
+    entries[at->second].places.emplace_back(v, place);
+    return at->first;
+  };
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    if (WhyUnsupported(variants[v], scene, effects)) continue;
+    if (variants[v].per_pixel != PerPixel::kNo) {
+      throw InputError(fmt::format("{}: several programs, or two in one; expected one program, without per_pixel", variants[v].ShortName()));
+    }
+    EffectDefines lit = Defines(effects, variants[v].effects);
+    lit.emplace_back("PATH_LIT", 1);
+    add(v, "full", "lighting.frag", 2, lit);
+    const std::string core = add(v, "core", "core.frag", 1, lit);
+    for (const Path& path : PathsOf(core)) {
+      auto defines = lit;
+      for (const std::string& define : path.defines) defines.emplace_back(define, 1);
+      add(v, path.name, "core.frag", 1, defines);
+    }
+  }
+
+  Find(library, entries, progress);
   std::vector<std::map<std::string, GpuCost>> found(variants.size());
   for (const Entry& entry : entries) {
     for (const auto& [v, place] : entry.places) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compare/results.h"
+#include "glsl/expand.h"
 #include "glsl/variant.h"
 #include "scenes/scene.h"
 
@@ -53,12 +54,17 @@ class CostMeter {
                                                       const Scene& scene,
                                                       const std::function<void(double)>& progress = {}) const;
 
+  // Of full-screen passes by themselves, per GPU.
+  std::vector<std::map<std::string, ShaderCost>> MeasurePasses(const ShaderLibrary& library, const std::vector<ExpandedSource>& passes) const;
+
  private:
   struct Text;
+  struct Entry;
   struct Job;
   static std::vector<std::uint32_t> Translate(const Text& text);
   std::string CacheName(std::string_view vertex, std::string_view fragment, int targets, const std::string& gpu) const;
   std::vector<std::pair<std::string, std::string>> WorkerEnvironment(const std::string& gpu) const;
+  void Find(const ShaderLibrary& library, std::vector<Entry>& entries, const std::function<void(double)>& progress) const;
   void Compile(std::span<const Job> jobs, const std::string& gpu) const;
   void Store(const std::string& name, const ShaderCost& cost) const;
 

@@ -27,13 +27,12 @@ struct EffectPrice {
 struct Explanation {
   std::string variant;  // canonical name
   std::vector<EffectPrice> effects;
-  Estimate pruned_over_all;  // time of the program that the scene calls for over that of one with every effect
-  int rounds = 0;
-  std::map<std::string, std::pair<int, int>> cycles;  // of both, by GPU
+  Saving saving;
 };
 
 struct ExplainOptions {
   bool prices = true;            // of each effect, or of all together only
+  bool per_pixel = true;         // and what asking each pixel would save
   const CostMeter* meter = nullptr;  // for the cycles; null: none
   double seconds = 20.0;         // of the clock
   std::function<void(double)> progress;

@@ -88,8 +88,7 @@ void MeasureSavings(const Context& context, Renderer& renderer, const ShaderLibr
   for (std::size_t v = 0; v < results.size(); ++v) {
     progress(static_cast<double>(v) / static_cast<double>(results.size()));
     if (!results[v].image) continue;
-    const Explanation explanation = Explain(context, renderer, library, scene, options.variants[v], explain);
-    results[v].saving = Saving{explanation.pruned_over_all, explanation.rounds, explanation.cycles};
+    results[v].saving = Explain(context, renderer, library, scene, options.variants[v], explain).saving;
   }
 }
 
@@ -333,6 +332,9 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
     }
     if (options.saving_seconds > 0.0) {
       measuring.wait();
+      Renderer::Needs needs = renderer.TileNeeds();
+      result.tile_columns = needs.tiles.x;
+      result.tile_needs = std::move(needs.of_tile);
       MeasureSavings(context, renderer, library, scene, options, [&](double fraction) { report("savings", 0.7 + 0.2 * fraction); },
                      result.variants);
     }

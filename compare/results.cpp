@@ -10,6 +10,7 @@
 #include "compare/cost.h"
 #include "compare/results_json.h"
 #include "compare/table.h"
+#include "glsl/per_pixel.h"
 
 namespace arealab {
 namespace {
@@ -53,12 +54,27 @@ Json TimeJson(const Timing& time) {
   return json;
 }
 
+// A letter a tile, from A: the sum of the bits of what it needs.
+Json TilesJson(const SceneResult& scene) {
+  Json json = {{"size", kTileSize}, {"columns", scene.tile_columns}, {"bits", {{"light", kNeedsLight}}}};
+  for (const PixelNeed& need : kPixelNeeds) json["bits"][need.effect] = need.bit;
+  std::string letters;
+  for (const int needs : scene.tile_needs) letters += static_cast<char>('A' + needs);
+  json["needs"] = letters;
+  return json;
+}
+
 Json SavingJson(const std::optional<Saving>& saving) {
   if (!saving) return nullptr;
   Json json = EstimateJson(saving->time, "interval", "time_ratio", Json::object());
   json["rounds"] = saving->rounds;
   json["cycles"] = Json::object();
   for (const auto& [gpu, cycles] : saving->cycles) json["cycles"][gpu] = {{"pruned", cycles.first}, {"every_effect", cycles.second}};
+  json["per_pixel"] = Json::object();
+  for (const auto& [way, cost] : saving->per_pixel) {
+    json["per_pixel"][way] = EstimateJson(cost.time, "interval", "time_ratio", Json::object());
+    json["per_pixel"][way]["cycles_ratio"] = cost.cycles;
+  }
   return json;
 }
 
@@ -114,6 +130,7 @@ Json SceneJson(const SceneResult& scene) {
   json["height"] = scene.height;
   json["exposure"] = Number(scene.exposure);
   json["effects"] = scene.effects;
+  if (!scene.tile_needs.empty()) json["tiles"] = TilesJson(scene);
   json["lit_pixels"] = scene.lit_pixels;
   json["truth"] = {{"relative_error", Number(scene.truth_relative_error)},
                    {"seconds", Number(scene.truth_seconds)},

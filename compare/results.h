@@ -70,11 +70,18 @@ struct ErrorSplit {
   std::vector<Cause> causes = {};
 };
 
-// What is saved by simulating only the effects that the scene calls for.
+// What is saved by simulating only the effects that the scene calls for, and what asking each pixel would save beyond that.
 struct Saving {
   Estimate time;  // of the lighting pass over that of the program with every effect
   int rounds = 0;
   std::map<std::string, std::pair<int, int>> cycles;  // of both, whole pass, by the GPU's name
+  // One way to ask (glsl/per_pixel.h) over the program that the scene calls for, what it costs to ask included.
+  struct PerPixel {
+    Estimate time;
+    std::map<std::string, double> cycles;  // ratio by the GPU's name, an estimate from the share of tiles of each class
+    bool Pays() const { return time.high < 1.0; }
+  };
+  std::map<std::string, PerPixel> per_pixel = {};  // "tiles" and, where horizons matter, "branch"
 };
 
 struct VariantResult {
@@ -119,6 +126,9 @@ struct SceneResult {
   int width = 0, height = 0;
   double exposure = 0.0;             // EV
   std::vector<std::string> effects;  // those that are on
+  // What the picture's tiles need (glsl/per_pixel.h), where asked for: a row of tiles after the other from the top.
+  int tile_columns = 0;
+  std::vector<int> tile_needs;
   int lit_pixels = 0;                // that truth lights
   double truth_relative_error = kNotMeasured, truth_seconds = kNotMeasured;
   bool truth_cached = false;

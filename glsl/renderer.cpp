@@ -12,6 +12,7 @@
 #include "glsl/gl_objects.h"
 #include "glsl/light_block.h"
 #include "glsl/light_textures.h"
+#include "glsl/per_pixel.h"
 #include "glsl/program.h"
 #include "glsl/shading_watch.h"
 #include "glsl/table.h"
@@ -34,7 +35,13 @@ struct Renderer::Impl {
         lights(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kLightRows, nullptr)),
         corners(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kCornerRows, nullptr)),
         light_textures(gl),
-        fullscreen(Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat)) {}
+        fullscreen(Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat)),
+        tile_points(Expand(library, "tiles.vert", {}, {{"TILE_SIZE", kTileSize}}, Precision::kFloat)),
+        tile_vertices(MakeVertexArray(gl)) {
+    gl.EnableVertexArrayAttrib(tile_vertices.id(), 0);
+    gl.VertexArrayAttribFormat(tile_vertices.id(), 0, 2, GL_FLOAT, GL_FALSE, 0);
+    gl.VertexArrayAttribBinding(tile_vertices.id(), 0, 0);
+  }
 
   // A technique's table, decoded and uploaded again only where its bytes have changed.
   struct Table {
@@ -47,18 +54,42 @@ struct Renderer::Impl {
     std::vector<GLuint> tables;
     bool textured = false;  // reads the lights' textures
   };
+  // What is drawn of a pass, and where.
+  struct Part {
+    GLuint framebuffer;
+    glm::ivec2 size;              // of the viewport
+    int first_row = 0, rows = 0;  // 0: all
+    GLint first_tile = 0;
+    GLsizei tiles = 0;            // of the list that is bound; 0: no tiles, a triangle over everything
+  };
+  // What the tiles need of a variant, and lists of those that need the same.
+  struct Tiling {
+    struct Class {
+      int needs;
+      GLint first;
+      GLsizei count;
+    };
+    const Program* program = nullptr;  // that asks
+    Needs needs;
+    std::vector<Class> classes;  // but for what is black
+    GlObject list;               // columns and rows of tiles
+  };
 
   void Allocate(glm::ivec2 size);
   Pass MakePass(const Variant& variant, Precision precision);
   GLuint LoadTable(const Variant& variant, const arealab::Table& table);
   void SetKnobs(const Pass& pass, const Variant& variant, const std::map<std::string, double>& knobs) const;
-  const Pass& KeptPass(const Variant& variant, Precision precision);
+  const Pass& KeptPass(const Variant& variant, Precision precision, bool anew = false);
+  // Draws the variant's rows; `anew`: after a look at its files.
+  void DrawRows(const Variant& variant, Precision precision, const std::map<std::string, double>& knobs, int first_row, int rows, bool anew);
+  // Classified once for a scene; `anew`: after a look at the files.
+  Tiling& TilingOf(const Variant& variant, bool anew);
+  void Classify(Tiling& tiling);
   ShadingWatch Watch(const Variant& variant) const {
     return {library.DisplayPath("techniques/" + variant.technique->name + ".glsl"),
             static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y)};
   }
-  void DrawPass(const Pass& pass) { DrawPass(pass, 0, size.y); }
-  void DrawPass(const Pass& pass, int first_row, int rows);
+  void DrawPass(const Pass& pass, const Part& part);
   void Black() const;
   std::vector<glm::vec3> ReadBack(const GlObject& texture) const;
   void ReadBack(const GlObject& texture, int first_row, int row_count, std::vector<glm::vec3>& image) const;
@@ -70,7 +101,8 @@ struct Renderer::Impl {
   GlObject lights;
   GlObject corners;
   LightTextures light_textures;
-  ExpandedSource fullscreen;
+  ExpandedSource fullscreen, tile_points;
+  GlObject tile_vertices;
 
   glm::ivec2 size{0};
   Scene scene;  // drawn last, without its meshes
@@ -81,6 +113,7 @@ struct Renderer::Impl {
   std::map<std::string, Table> tables;                                 // by their name in the library
   std::unique_ptr<Program> through;
   std::map<std::pair<std::string, Precision>, Pass> passes;            // of this scene, by the variant's name
+  std::map<std::string, Tiling> tilings;                               // of this scene, by the variant's name
 };
 
 void Renderer::Impl::Allocate(glm::ivec2 new_size) {
@@ -123,11 +156,14 @@ Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision 
   if (const std::optional<std::string> why = WhyUnsupported(variant, scene, effects)) {
     throw InputError(fmt::format("{}; expected a variant that supports the scene", *why));
   }
-  const ExpandedSource source = Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), precision, scene.brdf);
-  std::unique_ptr<Program>& program = programs[source.text];
-  if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
-  Pass pass{program.get(), {}};
   const EffectDefines defines = Defines(effects, variant.effects);
+  const ExpandedSource source = variant.per_pixel == PerPixel::kBranch
+                                    ? BranchSource(library, variant, effects, precision, scene.brdf)
+                                    : Expand(library, "lighting.frag", variant, defines, precision, scene.brdf);
+  const ExpandedSource& vertex = variant.per_pixel == PerPixel::kTiles ? tile_points : fullscreen;
+  std::unique_ptr<Program>& program = programs[vertex.text + source.text];
+  if (!program) program = std::make_unique<Program>(gl, vertex, source);
+  Pass pass{program.get(), {}};
   pass.textured = std::ranges::find(defines, std::pair<std::string, int>("EFFECT_TEXTURED", 1)) != defines.end();
   GLuint unit = kFirstTableUnit;
   for (const arealab::Table& table : variant.technique->tables) {
@@ -161,26 +197,89 @@ void Renderer::Impl::Black() const {
   for (GLint i = 0; i < 2; ++i) gl.ClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, i, black.data());
 }
 
-const Renderer::Impl::Pass& Renderer::Impl::KeptPass(const Variant& variant, Precision precision) {
+const Renderer::Impl::Pass& Renderer::Impl::KeptPass(const Variant& variant, Precision precision, bool anew) {
   const std::pair key{variant.Name(), precision};
-  if (const auto found = passes.find(key); found != passes.end()) return found->second;
+  if (const auto found = passes.find(key); !anew && found != passes.end()) return found->second;
   Pass pass = MakePass(variant, precision);  // before it has a place: making one may clear the others
-  return passes.emplace(key, std::move(pass)).first->second;
+  return passes[key] = std::move(pass);
 }
 
-void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) {
+Renderer::Impl::Tiling& Renderer::Impl::TilingOf(const Variant& variant, bool anew) {
+  Tiling& tiling = tilings[variant.technique ? variant.Name() : ""];
+  if (tiling.program && !anew) return tiling;
+  tiling.needs.asked = NeedsToAsk(library, variant, effects, scene);
+  const ExpandedSource source = NeedsSource(library, variant, effects, tiling.needs.asked, kTileSize);
+  std::unique_ptr<Program>& program = programs[source.text];
+  if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
+  tiling.program = program.get();
+  Classify(tiling);
+  return tiling;
+}
+
+void Renderer::Impl::Classify(Tiling& tiling) {
+  const glm::ivec2 tiles = (size + kTileSize - 1) / kTileSize;
+  tiling.needs.tiles = tiles;
+  const GlObject target = MakeTexture(gl, GL_R32F, 1, tiles);
+  const GlObject needs_framebuffer = MakeFramebuffer(gl);
+  gl.NamedFramebufferTexture(needs_framebuffer.id(), GL_COLOR_ATTACHMENT0, target.id(), 0);
+  DrawPass({tiling.program, {}, false}, {.framebuffer = needs_framebuffer.id(), .size = tiles});
+  std::vector<float> texels(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y));
+  gl.GetTextureImage(target.id(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
+  std::vector<int>& needs = tiling.needs.of_tile;
+  needs.assign(texels.begin(), texels.end());
+
+  std::map<int, std::vector<glm::vec2>> classes;  // a tile is drawn once, by the program that has what it needs
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    if (!(needs[i] & kNeedsLight)) continue;
+    const int x = static_cast<int>(i) % tiles.x, y = static_cast<int>(i) / tiles.x;
+    classes[needs[i] & tiling.needs.asked].emplace_back(x, y);
+  }
+  tiling.classes.clear();
+  std::vector<glm::vec2> list;
+  for (const auto& [needed, members] : classes) {
+    tiling.classes.push_back({needed, static_cast<GLint>(list.size()), static_cast<GLsizei>(members.size())});
+    list.insert(list.end(), members.begin(), members.end());
+  }
+  if (!list.empty()) tiling.list = MakeBuffer(gl, list.size() * sizeof(glm::vec2), list.data());
+}
+
+void Renderer::Impl::DrawRows(const Variant& variant, Precision precision, const std::map<std::string, double>& knobs, int first_row, int rows,
+                              bool anew) {
+  const Part whole{.framebuffer = framebuffer.id(), .size = size, .first_row = first_row, .rows = rows};
+  if (variant.per_pixel != PerPixel::kTiles) {
+    const Pass& pass = KeptPass(variant, precision, anew);
+    SetKnobs(pass, variant, knobs);
+    DrawPass(pass, whole);
+    return;
+  }
+  const Tiling& tiling = TilingOf(variant, anew);
+  Black();
+  gl.VertexArrayVertexBuffer(tile_vertices.id(), 0, tiling.list.id(), 0, sizeof(glm::vec2));
+  for (const Tiling::Class& tiles : tiling.classes) {
+    const Variant needed = VariantFor(variant, tiles.needs, tiling.needs.asked);
+    const Pass& pass = KeptPass(needed, precision, anew);
+    SetKnobs(pass, needed, knobs);
+    pass.program->Set("tile_count", glm::vec2(tiling.needs.tiles));
+    Part part = whole;
+    part.size = tiling.needs.tiles * kTileSize;
+    part.first_tile = tiles.first;
+    part.tiles = tiles.count;
+    DrawPass(pass, part);
+  }
+}
+
+void Renderer::Impl::DrawPass(const Pass& pass, const Part& part) {
   pass.program->Set("view_position", gbuffer.pixels().view_position);
   pass.program->Set("light_count", light_count);
   pass.program->Set("sky_radiance", glm::vec3(scene.sky.value_or(glm::dvec3(0.0))));
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
-  gl.Viewport(0, 0, size.x, size.y);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, part.framebuffer);
+  gl.Viewport(0, 0, part.size.x, part.size.y);
   for (const GLenum capability : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_DEPTH_TEST}) {
     gl.Disable(capability);
   }
   gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.UseProgram(pass.program->id());
-  gl.BindVertexArray(vertex_array.id());
   gl.BindTextureUnit(0, gbuffer.position());
   gl.BindTextureUnit(1, gbuffer.normal());
   gl.BindTextureUnit(2, gbuffer.base_color());
@@ -191,13 +290,20 @@ void Renderer::Impl::DrawPass(const Pass& pass, int first_row, int rows) {
   if (pass.textured) light_textures.Bind(*pass.program);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, lights.id());
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 1, corners.id());
-  const bool part = rows < size.y;
-  if (part) {
+  if (part.rows > 0) {
     gl.Enable(GL_SCISSOR_TEST);
-    gl.Scissor(0, first_row, size.x, rows);
+    gl.Scissor(0, part.first_row, part.size.x, part.rows);
   }
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
-  if (part) gl.Disable(GL_SCISSOR_TEST);
+  if (part.tiles > 0) {
+    gl.Enable(GL_PROGRAM_POINT_SIZE);
+    gl.BindVertexArray(tile_vertices.id());
+    gl.DrawArrays(GL_POINTS, part.first_tile, part.tiles);
+    gl.Disable(GL_PROGRAM_POINT_SIZE);
+  } else {
+    gl.BindVertexArray(vertex_array.id());
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  if (part.rows > 0) gl.Disable(GL_SCISSOR_TEST);
   gl.UseProgram(0);  // a program in use would outlive its object
   gl.BindVertexArray(0);
   gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -246,6 +352,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   impl_->effects = SceneEffects(scene);
   for (Effect& effect : impl_->effects) effect.on = effect.on && !effects_off.contains(effect.name);
   impl_->passes.clear();
+  impl_->tilings.clear();
   impl_->gl.NamedBufferSubData(impl_->lights.id(), 0,
                                static_cast<GLsizeiptr>(rows.size() * sizeof(glm::vec4)), rows.data());
   const std::vector<glm::vec4> corners = CornerBlockRows(lights);
@@ -259,10 +366,7 @@ RadianceImage Renderer::Shade(const Variant& variant, Precision precision,
   if (impl_->light_count == 0) {
     impl_->Black();
   } else {
-    Impl::Pass pass = impl_->MakePass(variant, precision);
-    impl_->SetKnobs(pass, variant, knobs);
-    impl_->DrawPass(pass);
-    impl_->passes[{variant.Name(), precision}] = std::move(pass);
+    impl_->DrawRows(variant, precision, knobs, 0, 0, true);
   }
   return {impl_->size.x, impl_->size.y, impl_->ReadBack(impl_->diffuse), impl_->ReadBack(impl_->specular)};
 }
@@ -276,9 +380,7 @@ void Renderer::ShadeRows(const Variant& variant, const std::map<std::string, dou
   }
   if (impl_->light_count == 0) return;
   const ShadingWatch watch = impl_->Watch(variant);
-  const Impl::Pass& pass = impl_->KeptPass(variant, precision);
-  impl_->SetKnobs(pass, variant, knobs);
-  impl_->DrawPass(pass, first, count);
+  impl_->DrawRows(variant, precision, knobs, first, count, false);
   impl_->ReadBack(impl_->diffuse, first, count, image.diffuse);
   impl_->ReadBack(impl_->specular, first, count, image.specular);
 }
@@ -288,9 +390,8 @@ void Renderer::Draw(const Variant& variant, Precision precision, const std::map<
   if (impl_->light_count == 0) {
     impl_->Black();
   } else {
-    const Impl::Pass& pass = impl_->KeptPass(variant, precision);
-    impl_->SetKnobs(pass, variant, knobs);
-    impl_->DrawPass(pass);
+    if (variant.per_pixel == PerPixel::kTiles) impl_->Classify(impl_->TilingOf(variant, false));
+    impl_->DrawRows(variant, precision, knobs, 0, 0, false);
   }
   impl_->gl.Finish();
 }
@@ -300,8 +401,13 @@ void Renderer::DrawThrough() {
     const ExpandedSource source = Expand(impl_->library, "through.frag", {}, Defines(impl_->effects), Precision::kFloat);
     impl_->through = std::make_unique<Program>(impl_->gl, impl_->fullscreen, source);
   }
-  impl_->DrawPass({impl_->through.get(), {}, false});
+  impl_->DrawPass({impl_->through.get(), {}, false}, {.framebuffer = impl_->framebuffer.id(), .size = impl_->size});
   impl_->gl.Finish();
+}
+
+Renderer::Needs Renderer::TileNeeds(const Variant& variant) {
+  if (impl_->light_count == 0) return {};
+  return impl_->TilingOf(variant, false).needs;
 }
 
 }  // namespace arealab

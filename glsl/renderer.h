@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "glsl/effects.h"
 #include "glsl/expand.h"
@@ -31,7 +32,7 @@ class Renderer {
   // `effects_off` are shaded as if the scene did not call for them: names from SceneEffects.
   const SurfacePixels& DrawScene(const Scene& scene, glm::ivec2 size, const std::set<std::string>& effects_off = {});
 
-  // Compiles (once per content) and runs the lighting pass. Throws InputError with the author's file and line
+  // Compiles (once per content) and runs the lighting pass, in tiles where the variant says so. Throws InputError with the author's file and line
   // where the text does not compile, where a table or a knob does not exist, and where the variant does not
   // support the scene. `knobs` override the header's initial values by name.
   RadianceImage Shade(const Variant& variant, Precision precision = Precision::kFloat,
@@ -45,9 +46,18 @@ class Renderer {
 
   // Draws the pass for `variant` once more without reading it back, for a clock; ends with glFinish. After a
   // Shade of the same variant since DrawScene it uses that program without looking at the files again, so
-  // that only drawing is timed.
+  // that only drawing is timed; tiles are classified anew, since that is part of what they cost.
   void Draw(const Variant& variant, Precision precision = Precision::kFloat,
             const std::map<std::string, double>& knobs = {});
+
+  // What the tiles of the picture need (glsl/per_pixel.h), a row of tiles after the other from the top: of all that is worth asking for a
+  // variant, or for any.
+  struct Needs {
+    glm::ivec2 tiles{0};
+    int asked = 0;
+    std::vector<int> of_tile;
+  };
+  Needs TileNeeds(const Variant& variant = {});
 
   // Draws a pass that reads the G-buffer and writes it through, for a clock: what every lighting pass pays beside shading.
   void DrawThrough();

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kPublished = "published";
 constexpr std::string_view kEffectPrefix = "effect_";
+constexpr std::pair<std::string_view, PerPixel> kPerPixel[] = {{"no", PerPixel::kNo}, {"branch", PerPixel::kBranch}, {"tiles", PerPixel::kTiles}};
 
 std::vector<std::string> Names(const auto& items) {
   std::vector<std::string> names;
@@ -63,6 +64,12 @@ void ParseAssignment(std::string_view assignment, std::string_view whole, Varian
   if (name == "effects") {
     if (choice != "all") throw InputError(fmt::format("variant \"{}\": effects={}; expected effects=all", whole, choice));
     variant = WithAllEffects(std::move(variant));
+    return;
+  }
+  if (name == "per_pixel") {
+    const auto found = std::ranges::find(kPerPixel, choice, [](const auto& way) { return way.first; });
+    if (found == std::end(kPerPixel)) throw InputError(fmt::format("variant \"{}\": per_pixel={}; expected no, branch or tiles", whole, choice));
+    variant.per_pixel = found->second;
     return;
   }
   if (name.starts_with(kEffectPrefix)) {
@@ -151,8 +158,12 @@ std::string Variant::Name() const {
     const std::string& choice = options.at(option.name);
     if (choice != option.choices.front().name) name += fmt::format("+{}={}", option.name, choice);
   }
-  if (!effects.empty() && effects == WithAllEffects(*this).effects) return name + "+effects=all";
-  for (const auto& [effect, on] : effects) name += fmt::format("+{}{}={}", kEffectPrefix, effect, on ? 1 : 0);
+  if (!effects.empty() && effects == WithAllEffects(*this).effects) {
+    name += "+effects=all";
+  } else {
+    for (const auto& [effect, on] : effects) name += fmt::format("+{}{}={}", kEffectPrefix, effect, on ? 1 : 0);
+  }
+  if (per_pixel != PerPixel::kNo) name += fmt::format("+per_pixel={}", std::ranges::find(kPerPixel, per_pixel, [](const auto& way) { return way.second; })->first);
   return name;
 }
 
@@ -164,7 +175,7 @@ std::string Variant::ShortName() const {
 }
 
 bool Variant::operator==(const Variant& other) const {
-  return technique->name == other.technique->name && options == other.options && effects == other.effects;
+  return technique->name == other.technique->name && options == other.options && effects == other.effects && per_pixel == other.per_pixel;
 }
 
 Variant DefaultVariant(const Technique& technique) {

@@ -12,13 +12,18 @@
 
 namespace arealab {
 
+// What is done where the picture needs an effect in a part only: nothing; a branch in the program; tiles, classified once and each drawn by the
+// program that it needs. What a pixel needs: glsl/needs.glsl.
+enum class PerPixel { kNo, kBranch, kTiles };
+
 struct Variant {
   const Technique* technique = nullptr;        // into the registry, which outlives it
   std::map<std::string, std::string> options;  // every option of the technique → choice
   std::map<std::string, bool> effects = {};    // forced on or off, by name; the scene decides the others
+  PerPixel per_pixel = PerPixel::kNo;
 
   // Canonical: "ltc", "ltc+clip=switch+edge=rational"; keys in header order, defaults left out. Forced effects last:
-  // "ltc+effect_horizon=1", "ltc+effects=all".
+  // "ltc+effect_horizon=1", "ltc+effects=all", "ltc+per_pixel=tiles".
   std::string Name() const;
   // "ltc@published" where these are its author's choices and differ from the defaults, else Name().
   std::string ShortName() const;

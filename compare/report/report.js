@@ -1295,48 +1295,89 @@ function buildFit() {
   return section;
 }
 
-// What simulating only the effects that scenes call for saves: the pruned program over the one with every effect.
-function savingOf(v, key) {
-  if (!v || !v.saving) return null;
-  if (key === "time") return v.saving.time_ratio;
-  const cycles = v.saving.cycles[key];
+// What simulating only the effects that scenes call for saves: the pruned program over the one with every effect, and what asking each pixel
+// costs over that.
+function savingOf(v, key, way) {
+  const saving = v && v.saving && (way === "pruned" ? v.saving : (v.saving.per_pixel || {})[way]);
+  if (!saving) return null;
+  if (key === "time") return saving.time_ratio;
+  if (way !== "pruned") return saving.cycles_ratio[key] ?? null;
+  const cycles = saving.cycles[key];
   return cycles ? cycles.pruned / cycles.every_effect : null;
 }
-function savingHint(v, key) {
-  if (key === "time") return v.saving.interval ? `95 % interval ${v.saving.interval.map((x) => x.toFixed(2)).join(" to ")}, ${v.saving.rounds} rounds` : "";
+function savingHint(v, key, way) {
+  const saving = way === "pruned" ? v.saving : v.saving.per_pixel[way];
+  if (key === "time") return saving.interval ? `95 % interval ${saving.interval.map((x) => x.toFixed(2)).join(" to ")}, ${v.saving.rounds} rounds` : "";
+  if (way !== "pruned") return "estimated from how many tiles are of which class";
   const cycles = v.saving.cycles[key];
   return cycles ? `${cycles.pruned} of ${cycles.every_effect} cycles` : "";
+}
+// Where a way of asking pixels pays, in a sentence a renderer.
+function whatPays(scenes) {
+  const said = ["time", ...gpusOf(scenes)].map((key) => {
+    const counts = [["tiles", "tiles"], ["branch", "a branch"]].map(([way, name]) => {
+      const asked = scenes.flatMap((s) => s.variants).filter((v) => known(savingOf(v, key, way)));
+      const pays = asked.filter((v) => { const of = v.saving.per_pixel[way]; return key === "time" ? of.interval && of.interval[1] < 1 : savingOf(v, key, way) < 1; });
+      return asked.length ? `${name} in ${pays.length} of ${asked.length}` : null;
+    }).filter(Boolean);
+    return counts.length ? `${key === "time" ? "here" : "on " + key} ${counts.join(", ")}` : null;
+  }).filter(Boolean);
+  return said.length ? `Asking each pixel what it needs pays, of variants and scenes: ${said.join("; ")}; elsewhere one program is cheaper.` : "";
+}
+const TILE_CLASSES = [["black: no light faces it", [38, 38, 46]], ["lights clear of every horizon", [120, 190, 170]], ["a light's stand-in may cross it", [235, 200, 110]], ["a light may cross it", [205, 95, 75]]];
+function tilePicture(s) {
+  const { columns, needs, bits, size } = s.tiles, canvas = h("canvas", { class: "tiles" });
+  canvas.width = columns; canvas.height = needs.length / columns;
+  const image = new ImageData(canvas.width, canvas.height), counts = new Map();
+  for (let i = 0; i < needs.length; ++i) {
+    const n = needs.charCodeAt(i) - 65, kind = !(n & bits.light) ? 0 : n & bits.horizon ? 3 : n & bits.proxy_horizon ? 2 : 1;
+    const lacks = kind ? ["diffuse", "specular"].filter((lobe) => s.effects.includes(lobe) && !(n & bits[lobe])) : [];
+    const name = TILE_CLASSES[kind][0] + lacks.map((lobe) => `, no ${lobe}`).join(""), color = TILE_CLASSES[kind][1].map((c) => lacks.length ? Math.round(c * 0.62) : c);
+    image.data.set([...color, 255], 4 * i);
+    counts.set(name, { color, count: (counts.get(name) || { count: 0 }).count + 1 });
+  }
+  canvas.getContext("2d").putImageData(image, 0, 0);
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", `tiles of ${size} pixels of ${s.name} by what they need`);
+  return h("figure", {}, canvas, h("figcaption", {}, h("b", { text: s.name }), [...counts].sort((a, b) => b[1].count - a[1].count).map(([name, c]) =>
+    h("span", {}, h("i", { style: { background: `rgb(${c.color})` } }), `${name} ${Math.round(100 * c.count / needs.length)} %`))));
 }
 function buildSavings() {
   const scenes = results.scenes.filter((s) => s.variants.some((v) => v.saving));
   if (!scenes.length) return null;
   const names = [...new Map(scenes.flatMap((s) => variantsOf(s).map((v) => [v.name, v.short_name || v.name])))];
-  const measures = segments("Saved in", [["time", "time here"], ...gpusOf(scenes).map((gpu) => [gpu, `cycles on ${gpu}`])], "time", (key) => refresh(key));
+  let key = "time", way = "pruned";
+  const measures = segments("Saved in", [["time", "time here"], ...gpusOf(scenes).map((gpu) => [gpu, `cycles on ${gpu}`])], key, (k) => { key = k; refresh(); });
+  const ways = segments("Saved by", [["pruned", "the scene's effects"], ["tiles", "tiles"], ["branch", "a branch"]], way, (w) => { way = w; refresh(); });
   const matrix = h("div", { class: "matrix vertical" + (scenes.length > 14 ? " many" : ""), role: "table" });
-  const mean = (key, variants) => {
-    const logs = variants.map((v) => savingOf(v, key)).filter((x) => x > 0).map(Math.log);
+  const mean = (variants) => {
+    const logs = variants.map((v) => savingOf(v, key, way)).filter((x) => x > 0).map(Math.log);
     return h("span", { class: "cell quiet", text: logs.length ? Math.exp(logs.reduce((sum, x) => sum + x, 0) / logs.length).toFixed(2) : "–" });
   };
-  const refresh = (key) => {
+  const refresh = () => {
     press(measures, key);
+    press(ways, way);
     const wide = !matchMedia("(max-width: 720px)").matches;
     matrix.style.gridTemplateColumns = (wide ? "minmax(7rem, 15rem) " : "") + `repeat(${scenes.length + 1}, minmax(0, 1fr))`;
     matrix.replaceChildren(h("span", { class: "corner" }), ...scenes.map((s) => h("span", { class: "column", text: s.name })), h("span", { class: "column", text: "mean" }));
     for (const [name, shown] of names) {
       const variants = scenes.map((s) => variantNamed(s, name));
       matrix.append(h("span", { class: "name", text: shown }), ...variants.map((v, i) => {
-        const x = savingOf(v, key);
-        return known(x) ? h("span", { class: "cell" + (x > 0.8 ? " hottest" : x > 0.6 ? " hot" : ""), style: { "--t": clamp(x, 0, 1) }, text: x.toFixed(2), title: `${scenes[i].name}, ${shown}: ${savingHint(v, key)}` })
+        const x = savingOf(v, key, way);
+        return known(x) ? h("span", { class: "cell" + (x > 0.8 ? " hottest" : x > 0.6 ? " hot" : ""), style: { "--t": clamp(x, 0, 1) }, text: x.toFixed(2), title: `${scenes[i].name}, ${shown}: ${savingHint(v, key, way)}` })
           : h("span", { class: "cell none", text: "–" });
-      }), mean(key, variants));
+      }), mean(variants));
     }
-    matrix.append(h("span", { class: "rule" }), h("span", { class: "name", text: "mean" }), ...scenes.map((s) => mean(key, s.variants)), mean(key, scenes.flatMap((s) => s.variants)));
+    matrix.append(h("span", { class: "rule" }), h("span", { class: "name", text: "mean" }), ...scenes.map((s) => mean(s.variants)), mean(scenes.flatMap((s) => s.variants)));
   };
+  const tiled = scenes.filter((s) => s.tiles);
   const section = h("section", { id: "savings", "aria-labelledby": "savings-heading" },
-    h("div", { class: "head" }, h("h2", { id: "savings-heading", text: "What only the needed effects cost" }), measures,
-      h("p", { class: "note", text: "The lighting pass with the effects that the scene calls for, over the same pass with every effect, which draws the same picture; means are geometric. The paler the cell, the more is saved. The command arealab explain prices each effect of a scene by itself." })),
-    h("div", { class: "card" }, matrix));
-  section.refresh = () => refresh("time");
+    h("div", { class: "head" }, h("h2", { id: "savings-heading", text: "What only the needed effects cost" }), ways, measures,
+      h("p", { class: "note", text: "The lighting pass with the effects that the scene calls for, over the same pass with every effect, which draws the same picture; means are geometric. The paler the cell, the more is saved. The command arealab explain prices each effect of a scene by itself." }),
+      h("p", { class: "note", text: "Tiles and a branch ask in each picture anew which pixels may do without the horizon, a lobe, or any light; they are set over the program that the scene calls for, and what it costs to ask is in them. " + whatPays(scenes) })),
+    h("div", { class: "card" }, matrix),
+    tiled.length ? h("div", { class: "card tile-pictures" }, tiled.map(tilePicture)) : null);
+  section.refresh = refresh;
   return section;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "compare/context.h"
+#include "glsl/per_pixel.h"
 #include "glsl/renderer.h"
 #include "scenes/error.h"
 #include "tests/compare/random_scenes.h"
@@ -60,6 +61,53 @@ Difference Pruned(Renderer& renderer, const Scene& scene, const Variant& variant
   return Between(pruned, all, variant.Name() + " in " + scene.name);
 }
 
+// A draw by tiles and, where there is a horizon to ask for, by a branch, against one program for all pixels.
+Difference AskedPerPixel(Renderer& renderer, const Scene& scene, Variant variant) {
+  const RadianceImage one = renderer.Shade(variant);
+  variant.per_pixel = PerPixel::kTiles;
+  const int asked = renderer.TileNeeds(variant).asked;
+  Difference difference = Between(renderer.Shade(variant), one, variant.Name() + " in " + scene.name);
+  if (asked & kHorizonNeeds) {
+    variant.per_pixel = PerPixel::kBranch;
+    difference.Add(Between(renderer.Shade(variant), one, variant.Name() + " in " + scene.name));
+  }
+  return difference;
+}
+
+// How far the light reaches from its centre along a unit normal, in double.
+double Reach(const Light& light, const glm::dvec3& normal) {
+  const double x = std::abs(glm::dot(normal, light.axis_x)) * light.half_size.x, y = std::abs(glm::dot(normal, light.axis_y)) * light.half_size.y;
+  switch (light.shape) {
+    case LightShape::kSphere:
+      return light.half_size.x;
+    case LightShape::kDisk:
+    case LightShape::kEllipse:
+      return std::hypot(x, y);
+    case LightShape::kTube:
+      return x + light.half_size.y * glm::length(glm::cross(normal, light.axis_x));
+    case LightShape::kRectangle:
+    case LightShape::kPolygon:
+      break;
+  }
+  return x + y;
+}
+
+// What one pixel needs by itself, in double and without a margin.
+int NeedsOf(const Scene& scene, const SurfacePixels& pixels, std::size_t i) {
+  const glm::dvec3 position(pixels.position[i]), normal(pixels.normal[i]);
+  if (pixels.position[i].w != 1.0f || glm::dot(normal, glm::dvec3(pixels.view_position) - position) <= 0.0) return 0;
+  int needs = scene.sky ? kNeedsLight : 0;
+  for (const Light& light : scene.lights) {
+    const glm::dvec3 to_center = light.center - position;
+    if (IsFlat(light.shape) && !light.two_sided && glm::dot(light.normal, to_center) >= 0.0) continue;
+    needs |= kNeedsLight;
+    if (std::abs(glm::dot(normal, to_center)) < Reach(light, normal)) needs |= kHorizonNeeds;
+  }
+  const glm::vec4& base = pixels.base_color[i];
+  if (needs != 0) needs |= (base.w != 1.0f && glm::vec3(base) != glm::vec3(0.0f) ? 8 : 0) | (base.w != -1.0f ? 16 : 0);
+  return needs;
+}
+
 class Pruning : public testing::Test {
  protected:
   Pruning() : context_(CreateContext(ContextKind::kOsmesa)), techniques_(LoadTechniques(library_)) {}
@@ -107,7 +155,8 @@ TEST_F(Pruning, KeepsRandomScenes) {
     renderer.DrawScene(scene, {24, 24});
     const Variant& variant = variants[(seed % RandomScenes::kKinds + seed / 500) % variants.size()];
     SCOPED_TRACE(fmt::format("seed {}", seed));
-    const Difference difference = Pruned(renderer, scene, variant);
+    Difference difference = Pruned(renderer, scene, variant);
+    if (seed < count / 10) difference.Add(AskedPerPixel(renderer, scene, variant));
     EXPECT_LE(difference.largest, kTolerance) << difference.where;
     worst.Add(difference);
   }
@@ -115,6 +164,54 @@ TEST_F(Pruning, KeepsRandomScenes) {
   for (const auto& [name, times] : off) EXPECT_GT(times, static_cast<int>(count / 50)) << name << " is hardly ever off";
   fmt::print("{} scenes, largest difference {:.2g} ({}), {} of {} pixels exactly equal\n", count, worst.largest, worst.where,
              worst.exact, worst.pixels);
+}
+
+// Asking each pixel what it needs changes nothing either, on sizes that no tile divides.
+TEST_F(Pruning, AskingPixelsKeepsTheBuiltInScenes) {
+  Renderer renderer(context_->gl(), library_);
+  Difference worst;
+  for (const auto& file : BuiltInScenes()) {
+    const Scene scene = LoadScene(file);
+    renderer.DrawScene(scene, {61, 45});
+    for (const char* name : {"ltc", "oat"}) {
+      const Variant variant = ParseVariant(techniques_, name);
+      if (WhyUnsupported(variant, scene)) continue;
+      const Difference difference = AskedPerPixel(renderer, scene, variant);
+      EXPECT_LE(difference.largest, kTolerance) << difference.where;
+      worst.Add(difference);
+    }
+  }
+  fmt::print("largest difference {:.2g} ({}), {} of {} pixels exactly equal\n", worst.largest, worst.where, worst.exact, worst.pixels);
+}
+
+// Tiles need at least what each of their pixels needs, and seldom more: a classification that says yes to everything would be right too.
+TEST_F(Pruning, TilesNeedWhatTheirPixelsNeed) {
+  Renderer renderer(context_->gl(), library_);
+  constexpr glm::ivec2 kSize(192, 150);
+  std::size_t lit = 0, dark = 0, crossed = 0, needed_light = 0, needed_horizon = 0;
+  for (const auto& file : BuiltInScenes()) {
+    const Scene scene = LoadScene(file);
+    const SurfacePixels& pixels = renderer.DrawScene(scene, kSize);
+    const Renderer::Needs needs = renderer.TileNeeds();
+    std::vector<int> together(needs.of_tile.size(), 0);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const int x = static_cast<int>(i) % kSize.x / kTileSize, y = static_cast<int>(i) / kSize.x / kTileSize;
+      together[static_cast<std::size_t>(y * needs.tiles.x + x)] |= NeedsOf(scene, pixels, i);
+    }
+    for (std::size_t t = 0; t < together.size(); ++t) {
+      const int asked = needs.asked | kNeedsLight;
+      EXPECT_EQ(together[t] & asked & ~needs.of_tile[t], 0) << scene.name << ", tile " << t;
+      lit += (needs.of_tile[t] & kNeedsLight) != 0;
+      dark += needs.of_tile[t] == 0;
+      crossed += (needs.of_tile[t] & 2) != 0;
+      needed_light += (together[t] & kNeedsLight) != 0;
+      needed_horizon += (together[t] & needs.asked & 2) != 0;
+    }
+  }
+  fmt::print("{} tiles are lit, {} of them need be; {} black; {} are crossed by a horizon, {} need be\n", lit, needed_light, dark, crossed, needed_horizon);
+  EXPECT_LT(static_cast<double>(lit), 1.02 * static_cast<double>(needed_light));
+  EXPECT_LT(static_cast<double>(crossed), 1.3 * static_cast<double>(needed_horizon));
+  EXPECT_GT(dark, lit / 10);
 }
 
 // The instrument: a wrongly dropped effect is seen.

@@ -458,20 +458,43 @@ class Page(unittest.TestCase):
         self.open()
         scenes = self.js("return window.arealab.results.scenes")
         names = list(dict.fromkeys(v["name"] for s in scenes for v in s["variants"] if v["stem"]))
-        for key, ratio in (("time", lambda v: v["saving"]["time_ratio"]),
-                           ("bonaire", lambda v: (lambda c: c["pruned"] / c["every_effect"])(v["saving"]["cycles"]["bonaire"]))):
-            self.js("document.querySelector(`#savings [data-value=${arguments[0]}]`).click()", key)
-            grid = self.js("return [...document.querySelectorAll('#savings .matrix > span')].map((c) => c.textContent)")
-            columns = len(scenes) + 2
-            rows = [grid[i + 1:i + columns] for i in range(columns, len(grid) - columns - 1, columns)]
-            self.assertEqual(len(rows), len(names))
-            for name, row in zip(names, rows):
-                found = [next((v for v in s["variants"] if v["name"] == name), None) for s in scenes]
-                ratios = [ratio(v) if v and v["saving"] else None for v in found]
-                self.assertEqual(row[:-1], [f"{x:.2f}" if x else "\u2013" for x in ratios])
-                known = [x for x in ratios if x]
-                mean = math.prod(known) ** (1 / len(known)) if known else None
-                self.assertEqual(row[-1], f"{mean:.2f}" if mean else "\u2013")
+        pruned = {"time": lambda v: v["saving"]["time_ratio"], "bonaire": lambda v: (lambda c: c["pruned"] / c["every_effect"])(v["saving"]["cycles"]["bonaire"])}
+        def per_pixel(way, key):
+            return lambda v: (lambda w: w and (w["time_ratio"] if key == "time" else w["cycles_ratio"][key]))(v["saving"]["per_pixel"].get(way))
+        for way in ("pruned", "tiles", "branch"):
+            for key in ("time", "bonaire"):
+                ratio = pruned[key] if way == "pruned" else per_pixel(way, key)
+                for choice in (way, key):
+                    self.js("document.querySelector(`#savings [data-value=${arguments[0]}]`).click()", choice)
+                grid = self.js("return [...document.querySelectorAll('#savings .matrix > span')].map((c) => c.textContent)")
+                columns = len(scenes) + 2
+                rows = [grid[i + 1:i + columns] for i in range(columns, len(grid) - columns - 1, columns)]
+                self.assertEqual(len(rows), len(names))
+                for name, row in zip(names, rows):
+                    found = [next((v for v in s["variants"] if v["name"] == name), None) for s in scenes]
+                    ratios = [ratio(v) if v and v["saving"] else None for v in found]
+                    self.assertEqual(row[:-1], [f"{x:.2f}" if x else "\u2013" for x in ratios])
+                    known = [x for x in ratios if x]
+                    mean = math.prod(known) ** (1 / len(known)) if known else None
+                    self.assertEqual(row[-1], f"{mean:.2f}" if mean else "\u2013")
+        pays = [v for s in scenes for v in s["variants"] if v["saving"]]
+        tiles = sum(v["saving"]["per_pixel"]["tiles"]["interval"][1] < 1 for v in pays)
+        self.assertIn(f"here tiles in {tiles} of {len(pays)}, a branch in 0 of", self.text("#savings .note:last-child"))
+
+    def test_tiles_are_drawn_by_what_they_need(self):
+        self.open()
+        needs = self.js("return window.arealab.results.scenes[0].tiles.needs")
+        drawn = self.js("""const c = document.querySelector('.tile-pictures canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+            return [c.width, ...Array.from({length: d.length / 4}, (_, i) => d.slice(4 * i, 4 * i + 3).join())];""")
+        self.assertEqual(drawn[0], 4)
+        kinds = {}
+        for letter, color in zip(needs, drawn[1:]):
+            kinds.setdefault(letter, color)
+            self.assertEqual(kinds[letter], color)
+        self.assertEqual(len(drawn) - 1, len(needs))
+        shown = {n: kinds[chr(65 + n)] for n in (0, 25, 27, 29, 31)}
+        self.assertEqual(len(set(shown.values())), 4)
+        self.assertEqual(shown[27], shown[31])  # horizons: whether the stand-in crosses one too does not matter
 
     def test_maps_in_the_grid(self):
         self.open("#thumbs=signed")

@@ -229,6 +229,8 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
        {n, 1.00001, 0.99999},
        24.0},
   };
+  scene.tile_columns = 4;
+  scene.tile_needs = {0, 0, 1, 7, 9, 17, 25, 27, 29, 31, 31, 31};
   const std::vector<glm::vec3> total = TotalRadiance(*truth);
   const FlipReference reference(total, size.width);
   for (const Named& named : all) {
@@ -249,7 +251,11 @@ inline SceneResult MakeScene(const std::string& name, const std::string& questio
     variant.time.net_ratio_to_point = around((8.0 * named.ratio - 5.0) / 3.0);
     variant.time.rounds = 9;
     const int cycles = static_cast<int>(100.0 * named.ratio) + 400;
-    if (variant.name != "reference") variant.saving = Saving{around(0.3 + 0.1 * named.ratio), 11, {{"bonaire", {cycles + 30, 2 * cycles}}}};
+    if (variant.name != "reference") {
+      variant.saving = Saving{around(0.3 + 0.1 * named.ratio), 11, {{"bonaire", {cycles + 30, 2 * cycles}}}};
+      variant.saving->per_pixel["tiles"] = {around(0.8 + 0.1 * named.ratio), {{"bonaire", 0.9}}};
+      if (variant.name != "point") variant.saving->per_pixel["branch"] = {around(1.2 + 0.1 * named.ratio), {{"bonaire", 1.1}}};
+    }
     for (const auto& [gpu, share] : {std::pair("bonaire", 1), std::pair("navi21", 2)}) {
       if (variant.name == "reference") continue;
       GpuCost& cost = variant.isa[gpu];
