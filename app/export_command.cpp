@@ -187,6 +187,7 @@ std::string Readme(const Variant& variant, const std::string& stem, const std::v
 - No shadows: multiply by yours. Emitters and tone mapping are yours too.
 - In OpenGL ES the float targets need EXT_color_buffer_float and the tables OES_texture_float_linear, or take half floats.
 - In SPIR-V and HLSL loose uniforms are gathered in a block; bindings are the compiler's, as its reflection lists them.
+- Tested: 3.30 on llvmpipe, 3.00 ES in WebGL 2, HLSL by way of glslang on lavapipe. Untested: GPUs, Direct3D's compilers.
 
 ## Licence
 

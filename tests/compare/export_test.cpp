@@ -12,6 +12,7 @@
 #include "glsl/renderer.h"
 #include "scenes/bake.h"
 #include "tests/compare/stranger.h"
+#include "tests/compare/stranger_vulkan.h"
 #include "tests/glsl/temporary_folder.h"
 
 namespace arealab::export_test {
@@ -149,12 +150,35 @@ TEST(Export, OnlyWhatIsUsedStays) {
   EXPECT_THAT(shapes.text, HasSubstr("light_count"));
 }
 
-TEST(Export, HlslCompilesBack) {
+// HLSL compiled back by glslang and drawn by a Vulkan that a CPU plays.
+TEST(Export, HlslDrawsTheSamePicture) {
+  if (!stranger::Vulkan().found()) GTEST_SKIP() << "no lavapipe (Debian: libvulkan1, mesa-vulkan-drivers)";
+  const auto context = CreateContext(ContextKind::kOsmesa);
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
   const TemporaryFolder folder;
+  const auto words = [&](std::vector<std::string> command, const std::string& input) {
+    const std::string file = (folder.path() / "compiled.spv").string();
+    command.insert(command.begin(), {"glslangValidator", "-V", "-o", file});
+    const ProcessResult result = RunProcess(command, {}, input);
+    EXPECT_EQ(result.status, 0) << result.messages;
+    const std::string bytes = stranger::ReadText(file);
+    std::vector<std::uint32_t> found(bytes.size() / 4);
+    std::memcpy(found.data(), bytes.data(), 4 * found.size());
+    return found;
+  };
+  const std::vector<std::uint32_t> vertex = words({"--stdin", "-S", "vert"},
+      "#version 450\nvoid main() { gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n");
   for (const std::string name : {"ltc", "point", "oat"}) {
     ExportTo(folder.path(), "gloss", name);
-    const ProcessResult back = RunProcess({"glslangValidator", "-D", "-V", "-e", "main", "-S", "frag", "-o", "/dev/null", (folder.path() / (name + ".hlsl")).string()}, {}, {});
-    EXPECT_EQ(back.status, 0) << name << ": " << back.messages;
+    const std::string file = (folder.path() / (name + ".hlsl")).string();
+    const std::vector<std::uint32_t> fragment =
+        words({"-D", "-e", "main", "-S", "frag", "--stb", "0", "--ssb", std::to_string(stranger::kSamplerShift), "--scb", std::to_string(stranger::kBufferShift), file}, "");
+    const Drawn drawn = DrawOneLight(context->gl(), library, ParseVariant(techniques, name), LoadScene(FindScene("gloss")));
+    stranger::Vulkan vulkan;
+    const stranger::Output theirs = vulkan.Draw(folder.path().string(), stranger::ReadText(file), vertex, fragment, drawn.input);
+    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
+    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;
   }
 }
 
