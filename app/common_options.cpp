@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "app/commands.h"
+#include "compare/program_cache.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -21,6 +22,7 @@ void CommonOptions::AddGlsl(CLI::App& command) {
 }
 
 std::unique_ptr<Context> CommonOptions::MakeContext() const {
+  KeepProgramsIn(ProgramsInFolder(CacheFolder()));
   if (context.empty()) return CreateContext();
   return CreateContext(context == "egl" ? ContextKind::kEgl : ContextKind::kOsmesa);
 }

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
 #include <glm/gtc/type_ptr.hpp>
 #include <string_view>
 
+#include "glsl/program_store.h"
 #include "scenes/error.h"
 
 namespace arealab {
@@ -42,22 +44,68 @@ GlObject Compile(const GladGLContext& gl, GLenum stage, const ExpandedSource& so
   throw InputError(fmt::format("{}; expected GLSL 4.50", FirstError(source.RewriteLog(log))));
 }
 
+std::shared_ptr<ProgramStore> program_store;
+
+// The texts and the driver; empty where programs are not kept.
+std::string ContentOf(const GladGLContext& gl, const ExpandedSource& vertex, const ExpandedSource& fragment) {
+  GLint formats = 0;
+  if (program_store) gl.GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
+  if (formats == 0) return "";
+  const auto named = [&](GLenum name) { return std::string(reinterpret_cast<const char*>(gl.GetString(name))) + "\n"; };
+  return named(GL_RENDERER) + named(GL_VERSION) + vertex.text + fragment.text;
+}
+
+bool IsLinked(const GladGLContext& gl, GLuint program) {
+  GLint linked = GL_FALSE;
+  gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+  return linked == GL_TRUE;
+}
+
+// The format's number, then the driver's bytes.
+bool LoadKept(const GladGLContext& gl, GLuint program, const std::string& content) {
+  const std::optional<std::string> bytes = program_store->Find(content);
+  GLenum format = 0;
+  if (!bytes || bytes->size() <= sizeof(format)) return false;
+  std::memcpy(&format, bytes->data(), sizeof(format));
+  gl.ProgramBinary(program, format, bytes->data() + sizeof(format), static_cast<GLsizei>(bytes->size() - sizeof(format)));
+  gl.GetError();  // a format that the driver does not know is one
+  return IsLinked(gl, program);
+}
+
+void Keep(const GladGLContext& gl, GLuint program, const std::string& content) {
+  GLint size = 0;
+  gl.GetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &size);
+  if (size <= 0) return;
+  GLenum format = 0;
+  std::string bytes(sizeof(format) + static_cast<std::size_t>(size), '\0');
+  gl.GetProgramBinary(program, size, &size, &format, bytes.data() + sizeof(format));
+  std::memcpy(bytes.data(), &format, sizeof(format));
+  bytes.resize(sizeof(format) + static_cast<std::size_t>(size));
+  program_store->Keep(content, bytes);
+}
+
 }  // namespace
+
+void KeepProgramsIn(std::shared_ptr<ProgramStore> store) { program_store = std::move(store); }
 
 Program::Program(const GladGLContext& gl, const ExpandedSource& vertex, const ExpandedSource& fragment)
     : gl_(&gl), program_(gl, gl.CreateProgram(), [](const GladGLContext& table, GLuint name) {
         table.DeleteProgram(name);
       }) {
+  const std::string content = ContentOf(gl, vertex, fragment);
+  if (!content.empty() && LoadKept(gl, id(), content)) return;
   const GlObject vertex_shader = Compile(gl, GL_VERTEX_SHADER, vertex);
   const GlObject fragment_shader = Compile(gl, GL_FRAGMENT_SHADER, fragment);
   gl.AttachShader(id(), vertex_shader.id());
   gl.AttachShader(id(), fragment_shader.id());
+  if (!content.empty()) gl.ProgramParameteri(id(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
   gl.LinkProgram(id());
   gl.DetachShader(id(), vertex_shader.id());
   gl.DetachShader(id(), fragment_shader.id());
-  GLint linked = GL_FALSE;
-  gl.GetProgramiv(id(), GL_LINK_STATUS, &linked);
-  if (linked == GL_TRUE) return;
+  if (IsLinked(gl, id())) {
+    if (!content.empty()) Keep(gl, id(), content);
+    return;
+  }
   GLint log_size = 0;
   gl.GetProgramiv(id(), GL_INFO_LOG_LENGTH, &log_size);
   std::string log(static_cast<std::size_t>(std::max(log_size, 1)), '\0');
