@@ -174,6 +174,17 @@ class Analysis {
     return ellipse.on ? ellipse : Shape(LightShape::kDisk);
   }
 
+  // Of what the text itself compares (FaceLight), twice as much.
+  Verdict Thin() const {
+    const std::vector<glm::vec4> rows = LightBlockRows(lights_);
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+      const float area = rows[i * kLightRows + 4].w;
+      const glm::vec4& products = rows[i * kLightRows + 7];
+      if (!(area > 2e-7f * (products.x + products.y) && area > 2e-30f)) return {true, Called(lights_[i], i) + " has hardly any area"};
+    }
+    return {false, "every light has an area that a float tells from none"};
+  }
+
   Verdict TwoSided() {
     if (std::none_of(lights_.begin(), lights_.end(), [](const Light& light) { return light.two_sided && IsFlat(light.shape); })) {
       return {false, "no light is lit on both sides"};
@@ -239,6 +250,13 @@ class Analysis {
       }
     }
     return {false, "every material reflects all light at normal incidence already"};
+  }
+
+  Verdict Metal() const {
+    for (const Material* material : materials_) {
+      if (material->metalness > 0.0f || material->metallic_roughness_texture) return {true, fmt::format("material \"{}\" is metallic", material->name)};
+    }
+    return {false, "no material is metallic"};
   }
 
   Verdict LightColor() const {
@@ -384,6 +402,7 @@ constexpr Rule kRules[] = {
     {"polygon", [](Analysis& scene) { return scene.Shape(LightShape::kPolygon); }},
     {"ellipse", [](Analysis& scene) { return scene.Shape(LightShape::kEllipse); }},
     {"tube", [](Analysis& scene) { return scene.Shape(LightShape::kTube); }},
+    {"thin", [](Analysis& scene) { return scene.Thin(); }},
     {"two_sided", [](Analysis& scene) { return scene.TwoSided(); }},
     {"behind", [](Analysis& scene) { return scene.Behind(); }},
     {"turned_away", [](Analysis& scene) { return scene.TurnedAway(); }},
@@ -393,6 +412,7 @@ constexpr Rule kRules[] = {
     {"specular", [](Analysis& scene) { return scene.Specular(); }},
     {"specular_weight", [](Analysis& scene) { return scene.SpecularWeight(); }},
     {"fresnel", [](Analysis& scene) { return scene.Fresnel(); }},
+    {"metal", [](Analysis& scene) { return scene.Metal(); }},
     {"light_color", [](Analysis& scene) { return scene.LightColor(); }},
     {"material_color", [](Analysis& scene) { return scene.MaterialColor(); }},
     {"aperture", [](Analysis& scene) { return scene.Aperture(); }},

@@ -12,8 +12,13 @@ Radiance FarField(Surface surface, Light light, vec3 to_view) {
   Radiance radiance = Radiance(vec3(0.0), vec3(0.0));
   vec3 to_center = light.center - surface.position;
   float distance2 = max(dot(to_center, to_center), kMinDistance2);
-  vec3 to_light = to_center * inversesqrt(distance2);
-  float n_dot_l = dot(surface.normal, to_light);
+  float inverse = inversesqrt(distance2);
+  vec3 to_light = to_center * inverse;
+#if EFFECT_SPECULAR
+  float n_dot_l = dot(surface.normal, to_light);  // the specular lobe's too
+#else
+  float n_dot_l = dot(surface.normal, to_center) * inverse;
+#endif
   if (!Lit(n_dot_l > 0.0)) return radiance;
 
   // Intensity L·A·cosθ_l, W/sr; area is a sphere's cross-section and a sphere has no cosine.
@@ -21,7 +26,7 @@ Radiance FarField(Surface surface, Light light, vec3 to_view) {
 #if EFFECT_TUBE
   if (light.shape == SHAPE_TUBE) cos_light = length(cross(light.axis_x, to_light));  // how long it is seen
 #endif
-  vec3 irradiance = MeanRadiance(light) * (light.area * cos_light * n_dot_l / distance2);
+  vec3 irradiance = MeanRadiance(light) * (light.area * cos_light * n_dot_l * (inverse * inverse));
 
   radiance.diffuse = surface.diffuse_albedo * irradiance / kPi;
 

@@ -60,7 +60,9 @@ void main() {
 #if !EFFECT_MATERIAL_COLOR
       base_color.rgb = vec3(base_color.r);
 #endif
-#if EFFECT_SPECULAR && !EFFECT_SPECULAR_WEIGHT
+#if !EFFECT_METAL
+      float metalness = 0.0;
+#elif EFFECT_SPECULAR && !EFFECT_SPECULAR_WEIGHT
       float metalness = base_color.w;
 #else
       float metalness = max(base_color.w, 0.0);

@@ -59,7 +59,9 @@ Light LoadLight(int i) {
 // does: the point is in the plane or behind it. A sphere or a tube faces everything, and so does every light where nothing lies behind one.
 // A light without an area is none, and one that is thinner than 1e-7 of its length neither: no float tells its sides apart.
 bool FaceLight(inout Light light, vec3 position) {
+#if EFFECT_THIN
   if (light.area <= max(1e-7 * (light.products.x + light.products.y), 1e-30)) return false;
+#endif
 #if EFFECT_BEHIND && (EFFECT_RECTANGLE || EFFECT_DISK || EFFECT_POLYGON)
 #if EFFECT_TUBE
   if (light.shape != SHAPE_SPHERE && light.shape != SHAPE_TUBE)

@@ -62,11 +62,11 @@ TEST(Effects, FollowTheMaterials) {
   wall.specular = 1.0f;
   EXPECT_THAT(On(scene), ElementsAre("rectangle", "diffuse", "specular", "fresnel"));
   wall.metalness = 1.0f;
-  EXPECT_THAT(On(scene), ElementsAre("rectangle", "specular", "fresnel"));
+  EXPECT_THAT(On(scene), ElementsAre("rectangle", "specular", "fresnel", "metal"));
   wall.base_color = glm::vec3(1.0f);
-  EXPECT_THAT(On(scene), ElementsAre("rectangle", "specular"));
+  EXPECT_THAT(On(scene), ElementsAre("rectangle", "specular", "metal"));
   wall.metallic_roughness_texture = std::make_shared<Image>(Image{1, 1, {glm::vec4(0.5f)}});
-  EXPECT_THAT(On(scene), ElementsAre("rectangle", "diffuse", "specular", "fresnel"));
+  EXPECT_THAT(On(scene), ElementsAre("rectangle", "diffuse", "specular", "fresnel", "metal"));
   wall.base_color = {1.0f, 0.5f, 1.0f};
   EXPECT_TRUE(SceneEffect(scene, "material_color").on);
   scene.materials.insert(scene.materials.begin(), MatteWall().materials[0]);  // what no surface is made of costs nothing
@@ -151,6 +151,18 @@ TEST(Effects, WhatIsTurnedAwayCallsForNothing) {
   scene.camera.position.z = -3.0;
   EXPECT_FALSE(SceneEffect(scene, "horizon").on);
   EXPECT_TRUE(SceneEffect(scene, "turned_away").on);
+}
+
+TEST(Effects, FollowMetalAndArea) {
+  Scene scene = MatteWall();
+  EXPECT_FALSE(SceneEffect(scene, "metal").on);
+  EXPECT_FALSE(SceneEffect(scene, "thin").on);
+  scene.materials[0].metalness = 0.25f;
+  EXPECT_TRUE(SceneEffect(scene, "metal").on);
+  scene.lights[0].half_size = {1.0, 2e-8};
+  EXPECT_TRUE(SceneEffect(scene, "thin").on);
+  scene.lights[0].half_size = {1.0, 1e-6};
+  EXPECT_FALSE(SceneEffect(scene, "thin").on);
 }
 
 TEST(Effects, FollowTheSky) {
