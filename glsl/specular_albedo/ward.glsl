@@ -2,7 +2,7 @@
 
 // x: with Fresnel 1; y: with Schlick's weight. n_dot_v, roughness in [0, 1]. Least squares by us over 25×25 nodes of both against
 // quadrature; root mean square error 0.016 and 0.011, at most 0.11 and 0.067, the largest at n·v < 0.04.
-vec2 SpecularAlbedo(float n_dot_v, float roughness) {
+vec2 LobeAlbedo(float n_dot_v, float roughness) {
   float s = sqrt(n_dot_v);
   float r = roughness;
   float loss = 11.84164 - 33.51561 * s + 22.01141 * n_dot_v;

@@ -156,7 +156,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   float fade = 1.0 - outside * outside * (3.0 - 2.0 * outside);
   cone.center = nearest;
   float share = FootprintOnRectangle(cone, half_size).area / (kPi * cone.radius * cone.radius);
-  vec2 energy = SpecularAlbedo(n_dot_v, surface.roughness);
+  vec2 energy = LobeAlbedo(n_dot_v, surface.roughness);
 #if EFFECT_FRESNEL
   vec3 reflectance = surface.f0 * (energy.x - energy.y) + vec3(energy.y);
 #else

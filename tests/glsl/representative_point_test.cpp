@@ -353,7 +353,7 @@ TEST(SpecularAlbedo, FitIsWithinItsStatedError) {
 
 // By Ward's own formula with H = l + v: |H|²/(n·H)⁴ · n·l over the density of facets is n·l/(v·h n·h).
 TEST(SpecularAlbedo, WardsFitIsWithinItsStatedError) {
-  CheckAlbedo([](double n_dot_v, double roughness) { return dual::ward::SpecularAlbedo(n_dot_v, roughness); },
+  CheckAlbedo([](double n_dot_v, double roughness) { return dual::ward::LobeAlbedo(n_dot_v, roughness); },
               [](double u, double alpha) { return 1.0 / (1.0 - alpha * alpha * std::log1p(-u)); },
               [](double, double n_dot_l, double v_dot_h, double n_dot_h, double) { return n_dot_l / (v_dot_h * n_dot_h); },
               {0.016, 0.014}, {0.06, 0.06});
