@@ -22,8 +22,12 @@ vec3 HorizonEdge(vec4 v0, vec4 v1) {
   return vec3(0.0, 0.0, sense * EdgeAngle(d, v0.w * v1.w, abs(area)));
 }
 
-// Where the side from a corner above to one below meets the horizon; only its direction counts.
-vec3 MeetHorizon(vec3 above, vec3 below) { return above.z * below - below.z * above; }
+// Where the side from a corner above to one below meets the horizon. Edges that make corners unit ask for its direction alone; of others the
+// fourth power of a length is taken, and lights are 1e-5 to 1e5 m large.
+vec3 MeetHorizon(vec3 above, vec3 below) {
+  vec3 place = above.z * below - below.z * above;
+  return kEdgeUnit ? place : vec3(vec2(place) / max(above.z - below.z, 1e-30), 0.0);
+}
 
 // From the sum of a polygon's edges.
 vec3 VectorOfEdges(vec3 sum) { return vec3(sum.x * (0.5 / kPi), sum.y * (0.5 / kPi), AsFormFactor(sum.z * (0.5 / kPi))); }

@@ -29,13 +29,6 @@ vec3 PolygonCorner(Light light, PolygonView view, int i) {
   return view.center + view.axis_x * corner.x + view.axis_y * corner.y;
 }
 
-// As large to the eye, about 1 m from it: where sides meet the horizon lengths are taken to the eighth power, and lights are 1e-5 to
-// 1e5 m large. A form factor does not tell.
-PolygonView NearPolygon(Light light, PolygonView view) {
-  float scale = inversesqrt(max(dot(view.center, view.center) + dot(light.half_size, light.half_size), 1e-30));
-  return PolygonView(view.center * scale, view.axis_x * scale, view.axis_y * scale);
-}
-
 // The rectangle that the corners reach: what is small against its distance is taken as one of the polygon's area about the centroid,
 // as in polygon.glsl and for its reasons.
 bool IsSmallPolygon(Light light, PolygonView view) {
@@ -69,11 +62,10 @@ vec3 ClippedPolygon(Light light, PolygonView view, bool lambert) {
   if (!Lit(!IsSmallPolygon(light, view))) {
     return ClippedSmallRectangle(view.center, view.axis_x * light.half_size.x, view.axis_y * light.half_size.y) * SmallPolygonShare(light);
   }
-  PolygonView near = NearPolygon(light, view);
   StreamedOutline outline = NoOutline();
-  vec3 from = PolygonCorner(light, near, 0);
+  vec3 from = PolygonCorner(light, view, 0);
   for (int i = light.corner_count - 1; i >= 0; --i) {
-    vec3 to = PolygonCorner(light, near, i);
+    vec3 to = PolygonCorner(light, view, i);
     outline = StreamSide(outline, from, to, lambert);
     from = to;
   }

@@ -2,6 +2,7 @@
 #include "polygon.glsl"
 
 const bool kEdgeMirrored = false;
+const bool kEdgeUnit = true;  // whether EdgeVertex makes corners unit
 
 // A corner as the edges want it: unit, so that the products of lengths fold to 1.
 vec4 EdgeVertex(vec3 v) { return vec4(v * inversesqrt(max(dot(v, v), 1e-30)), 1.0); }

@@ -3,6 +3,7 @@
 #include "polygon.glsl"
 
 const bool kEdgeMirrored = false;
+const bool kEdgeUnit = false;
 
 // A corner as the edges want it: as it is, since no length is asked.
 vec4 EdgeVertex(vec3 v) { return vec4(v, 1.0); }

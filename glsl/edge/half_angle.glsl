@@ -11,6 +11,7 @@ float WholeEdgePolynomial(float u) {
 }
 
 const bool kEdgeMirrored = false;
+const bool kEdgeUnit = false;
 
 // A corner as the edges want it: direction and squared length.
 vec4 EdgeVertex(vec3 v) { return vec4(v, dot(v, v)); }

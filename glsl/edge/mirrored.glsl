@@ -12,6 +12,7 @@ float EdgePolynomial(float y) {
 
 // Ratios are of the acute angle: the caller mirrors (MirroredEdge).
 const bool kEdgeMirrored = true;
+const bool kEdgeUnit = false;
 
 // A corner as the edges want it: direction and squared length.
 vec4 EdgeVertex(vec3 v) { return vec4(v, dot(v, v)); }

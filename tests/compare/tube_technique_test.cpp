@@ -135,6 +135,32 @@ TEST_F(TubeTechnique, LambertByRadius) {
   }
 }
 
+// Cut by the horizon: lengths are taken to the fourth power there, and lights are 1e-5 to 1e5 m large.
+TEST_F(TubeTechnique, AsLargeToTheEyeIsTheSame) {
+  for (const LightShape shape : {kTube, LightShape::kRectangle, LightShape::kPolygon}) {
+    for (const std::string variant : {"ltc", "ltc+clip=stream", "ltc+horizon=true"}) {
+      if (shape != LightShape::kRectangle && variant != "ltc") continue;
+      std::vector<PointCase> cases;
+      for (const double scale : {1.0, 1e-5, 1e5}) {
+        PointCase c = Tube(scale * glm::dvec3(-1.2, 0.3, 0.1), {0.6, 0.0, 0.8}, scale, 0.2 * scale);
+        c.shape = shape;
+        if (shape != kTube && glm::dot(c.light_normal, c.center) > 0.0) {
+          c.light_normal = -c.light_normal;
+          c.axis_y = -c.axis_y;
+        }
+        if (shape == LightShape::kPolygon) c.corners = {{-scale, -0.2 * scale}, {scale, -0.2 * scale}, {0.5 * scale, 0.2 * scale}};
+        cases.push_back(c.Rounded());
+      }
+      const std::vector<Shaded> shaded = points_->Shade(variant, cases);
+      EXPECT_GT(shaded[0].diffuse, 1e-3) << variant << " " << Name(shape);
+      for (const Shaded& s : shaded) {
+        EXPECT_NEAR(s.diffuse, shaded[0].diffuse, 1e-6) << variant << " " << Name(shape);
+        EXPECT_NEAR(s.specular, shaded[0].specular, 1e-6) << variant << " " << Name(shape);
+      }
+    }
+  }
+}
+
 TEST_F(TubeTechnique, TheReferenceIsTheTruth) {
   const std::vector<PointCase> cases = RandomPoints(62, kTube, 1000);
   const std::vector<Shaded> truth = TruthOf(cases, 1e-4);

@@ -84,6 +84,7 @@ namespace stream {
 namespace exact {
 // The edges without any approximation: what is left is the clip's own error.
 const bool kEdgeMirrored = false;
+const bool kEdgeUnit = false;
 vec4 EdgeVertex(vec3 v) {
   return vec4(v, dot(v, v));
 }
