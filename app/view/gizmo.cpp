@@ -65,7 +65,6 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
   ImDrawList& draw = *ImGui::GetBackgroundDrawList();
   draw.PushClipRect(ToImGui(origin), ToImGui(origin + size), true);
   const ImGuiIO& io = ImGui::GetIO();
-  const glm::dvec2 mouse = glm::dvec2(io.MousePos.x, io.MousePos.y) - origin;
   const Projection view(session.scene.camera, size);
   const float line = ImGui::GetFontSize() / 16.0f;
   const auto pixel = [&](const glm::dvec3& p) { return view.Pixel(p); };
@@ -138,7 +137,7 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
     grabbed_ = pointer;
     before_ = light;
   }
-  const bool released = handle_ >= 0 && !ImGui::IsMouseDown(0);  // after its last move, which may come in the same frame
+  const bool released = handle_ >= 0 && !ImGui::IsMouseDown(0);
 
   if (handle_ >= 0) {
     const auto held = static_cast<std::size_t>(std::min(handle_, 2));
@@ -146,25 +145,25 @@ bool Gizmo::Run(Session& session, glm::dvec2 origin, glm::dvec2 size, glm::dvec2
     const auto before_center = pixel(before_.center);
     const auto snapped = [&](double v, double step) { return io.KeyCtrl ? std::round(v / step) * step : v; };
     if (session.gizmo == GizmoMode::kMove && handle_ == kCenter) {
-      const glm::dvec2 moved = mouse - grabbed_;
+      const glm::dvec2 moved = pointer - grabbed_;
       light.center = before_.center + view.PixelSize(before_.center) * (moved.x * view.right - moved.y * view.up);
     } else if (session.gizmo == GizmoMode::kMove) {
       const auto then = AlongLine(view.position, view.Direction(grabbed_), before_.center, from[held]);
-      const auto now = AlongLine(view.position, view.Direction(mouse), before_.center, from[held]);
+      const auto now = AlongLine(view.position, view.Direction(pointer), before_.center, from[held]);
       if (then && now) light.center = before_.center + snapped(*now - *then, kSnapMetres) * from[held];
     } else if (session.gizmo == GizmoMode::kTurn && before_center) {
       const auto angle_at = [&](glm::dvec2 p) { return std::atan2(-(p.y - before_center->y), p.x - before_center->x); };
-      double angle = angle_at(mouse) - angle_at(grabbed_);
+      double angle = angle_at(pointer) - angle_at(grabbed_);
       if (glm::dot(from[held], before_.center - view.position) > 0.0) angle = -angle;  // the axis points away from us
       angle = snapped(std::remainder(angle, 2.0 * glm::pi<double>()), kSnapAngle);
       light.axis_x = glm::normalize(glm::angleAxis(angle, from[held]) * before_.axis_x);
       light.normal = glm::normalize(glm::angleAxis(angle, from[held]) * before_.normal);
       light.axis_y = glm::cross(light.normal, light.axis_x);
     } else if (before_center) {
-      const double ratio = glm::distance(mouse, *before_center) / std::max(glm::distance(grabbed_, *before_center), 4.0 * line);
+      const double ratio = glm::distance(pointer, *before_center) / std::max(glm::distance(grabbed_, *before_center), 4.0 * line);
       for (int i = 0; i < 2; ++i) {
         const bool whole = handle_ == kCenter || !HasTwoSizes(before_.shape);
-        const double grown = handle_ == kCenter ? std::exp2((mouse.x - grabbed_.x) / reach) : ratio;
+        const double grown = handle_ == kCenter ? std::exp2((pointer.x - grabbed_.x) / reach) : ratio;
         if (!whole && handle_ != i) continue;
         light.half_size[i] = std::clamp(before_.half_size[i] * grown, 5e-4, 1e5);
         for (std::size_t k = 0; k < light.corners.size(); ++k) {

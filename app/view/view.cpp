@@ -10,10 +10,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cfloat>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <deque>
 #include <fstream>
 #include <future>
 #include <glm/gtc/constants.hpp>
@@ -141,7 +144,7 @@ struct ImGuiLibrary {
   explicit ImGuiLibrary(GLFWwindow* window) {
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
-    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplGlfw_InitForOpenGL(window, false);  // its events come by View::Replay
     ImGui_ImplOpenGL3_Init("#version 450 core");
   }
   ~ImGuiLibrary() {
@@ -177,21 +180,19 @@ struct Figures {
 
 enum class Drag { kNone, kPending, kOrbit, kPan, kDolly, kWipe, kControls };
 
-// What the window's callbacks saw since the last frame. Presses are kept here, since ImGui 1.86 looks at keys and places
-// once a frame only: a key that is tapped or a drag that begins between two slow frames would be lost to it.
+// What the window's callbacks saw and no frame has taken yet, in its order.
+struct Event {
+  enum Kind { kMove, kButton, kKey, kCharacter, kWheel, kDrop };
+  Kind kind;
+  int code = 0, scancode = 0, action = 0, modifiers = 0;  // of a button or a key; the code is a character's too
+  glm::dvec2 place{0.0};                                  // in the window, or what the wheel turned
+  std::vector<std::string> files{};
+};
+
 struct Inputs {
-  struct Key {
-    int key, modifiers;
-  };
   std::optional<Clock::time_point> first;  // that no job has answered yet
   bool any = false;
-  std::vector<Key> keys;
-  std::vector<std::string> dropped;  // files
-  int buttons = 0;        // that are down
-  bool shift = false;     // as one went down last
-  bool pressed = false, released = false;  // since the last frame
-  glm::dvec2 cursor{0.0};               // as the events tell, in the window; GLFW would say where it is by now
-  glm::dvec2 press{0.0}, release{0.0};  // where a button went down and up last
+  std::deque<Event> events;
 };
 Inputs inputs;
 void Noticed() {
@@ -319,7 +320,7 @@ class View {
     wanted_shot_ = std::exchange(asked_shot_, {});
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    PlaceClick();
+    Replay();
     ImGui::NewFrame();
     PanelContext context{session_, state_, worker_.progress(), unit_, wanted_shot_.empty() ? message_ : "", trouble_, inspection_, inspector_ && inspector_->busy(), cycles_, history_};
     context.flicker_pane = FlickerPane();
@@ -349,7 +350,7 @@ class View {
     if (requests.snapshot) KeepSnapshot();
     if (requests.copy) CopyCase();
     if (requests.exr) asked_shot_ = Numbered(".exr");
-    for (const std::string& file : std::exchange(inputs.dropped, {})) Drop(file);
+    for (const std::string& file : std::exchange(dropped_, {})) Drop(file);
     if (!ImGui::IsAnyItemActive() && !gizmo_.dragging()) session_.Commit();
     ImGui::Render();
 
@@ -365,16 +366,42 @@ class View {
     Note(start);
   }
 
-  // A click counts where the button went down and where it came up, though the pointer may have gone on within a slow frame.
-  void PlaceClick() {
-    ImGuiIO& io = ImGui::GetIO();
-    const auto at = [&](glm::dvec2 p) { io.MousePos = {static_cast<float>(p.x), static_cast<float>(p.y)}; };
-    if (std::exchange(inputs.pressed, false)) {
-      at(inputs.press);
-    } else if (std::exchange(inputs.released, false)) {
-      at(inputs.release);
-      redraw_ = std::max(redraw_, 2);
+  // Hands on what was done since the last frame. ImGui 1.86 looks at keys, buttons and the pointer once a frame only, so a
+  // frame takes no more than one change of a button and nothing after it, and no key that both goes down and comes up:
+  // however slow a frame was, a tap, a click and a drag are what the hand did, where the hand did it.
+  void Replay() {
+    std::vector<int> went_down;
+    bool button = false;
+    while (!inputs.events.empty() && !button) {
+      const Event& next = inputs.events.front();
+      if (next.kind == Event::kKey && next.action == GLFW_RELEASE && std::ranges::find(went_down, next.code) != went_down.end()) break;
+      const Event event = std::move(inputs.events.front());
+      inputs.events.pop_front();
+      switch (event.kind) {
+        case Event::kMove: cursor_ = event.place; break;
+        case Event::kButton:
+          ImGui_ImplGlfw_MouseButtonCallback(window_.window, event.code, event.action, event.modifiers);
+          button = true;
+          if (event.code < static_cast<int>(buttons_.size())) buttons_[static_cast<std::size_t>(event.code)] = event.action == GLFW_PRESS;
+          if (event.action == GLFW_PRESS) shift_ = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+          break;
+        case Event::kKey:
+          ImGui_ImplGlfw_KeyCallback(window_.window, event.code, event.scancode, event.action, event.modifiers);
+          if (event.action == GLFW_PRESS) {
+            went_down.push_back(event.code);
+            keys_.push_back(event);
+          }
+          break;
+        case Event::kCharacter: ImGui_ImplGlfw_CharCallback(window_.window, static_cast<unsigned>(event.code)); break;
+        case Event::kWheel: ImGui_ImplGlfw_ScrollCallback(window_.window, event.place.x, event.place.y); break;
+        case Event::kDrop: dropped_.insert(dropped_.end(), event.files.begin(), event.files.end()); break;
+      }
     }
+    if (!inputs.events.empty() || button) redraw_ = std::max(redraw_, 3);
+    // GLFW would tell the buttons and the pointer as they are by now.
+    ImGuiIO& io = ImGui::GetIO();
+    std::ranges::copy(buttons_, io.MouseDown);
+    if (io.MousePos.x != -FLT_MAX) io.MousePos = {static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)};
   }
 
   // Figures of what is now on the screen.
@@ -602,12 +629,7 @@ class View {
 
   void Pointer(PanelContext& context) {
     const ImGuiIO& io = ImGui::GetIO();
-    // A drag ends where the button went up.
-    const glm::dvec2 mouse = drag_ != Drag::kNone && inputs.buttons == 0 ? inputs.release - origin_ : Mouse();
-    const glm::dvec2 press = inputs.press - origin_;
-    // In the frame of a press its own place counts: the pointer may have gone on since.
-    const bool clicked = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
-    const glm::dvec2 at = clicked ? press : mouse;
+    const glm::dvec2 at = Mouse();
     const auto [pane_origin, pane_size] = Pane(drag_ == Drag::kNone ? at : pressed_);
     const bool free = drag_ == Drag::kNone && !io.WantCaptureMouse && Inside(at);
     Camera& camera = session_.scene.camera;
@@ -621,7 +643,7 @@ class View {
     if (context.over_wipe) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
 
     if (free && !gizmo_.dragging()) {
-      if (clicked) pressed_ = dragged_ = press;
+      if (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2)) pressed_ = dragged_ = at;
       if (ImGui::IsMouseClicked(0)) {
         if (near_wipe && !alt) drag_ = Drag::kWipe;
         else if (!on_gizmo) drag_ = maya && alt ? Drag::kOrbit : Drag::kPending;
@@ -632,15 +654,15 @@ class View {
       }
       if (io.MouseWheel != 0.0f) Dolly(camera, std::pow(0.9, io.MouseWheel));
     }
-    if (drag_ == Drag::kPending && glm::distance(mouse, pressed_) > kClickReach && !maya) {
-      drag_ = inputs.shift ? Drag::kPan : Drag::kOrbit;
+    if (drag_ == Drag::kPending && glm::distance(at, pressed_) > kClickReach && !maya) {
+      drag_ = shift_ ? Drag::kPan : Drag::kOrbit;
     }
-    const glm::dvec2 moved = mouse - std::exchange(dragged_, mouse);
+    const glm::dvec2 moved = at - std::exchange(dragged_, at);
     const double per_pixel = 2.0 / std::max(pane_size.y, 1.0);  // rad: half a turn for a drag of 1.6 heights
     if (drag_ == Drag::kOrbit) Orbit(camera, -moved.x * per_pixel, moved.y * per_pixel);
     if (drag_ == Drag::kPan) Pan(camera, moved, pane_size);
     if (drag_ == Drag::kDolly) Dolly(camera, std::exp((moved.y - moved.x) * per_pixel));
-    if (drag_ == Drag::kWipe) session_.wipe = static_cast<float>(std::clamp(mouse.x / size_.x, 0.0, 1.0));
+    if (drag_ == Drag::kWipe) session_.wipe = static_cast<float>(std::clamp(at.x / size_.x, 0.0, 1.0));
     if (drag_ != Drag::kNone && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1) && !ImGui::IsMouseDown(2)) {
       if (drag_ == Drag::kPending) Click((pressed_ - pane_origin) / pane_size);
       drag_ = Drag::kNone;
@@ -651,7 +673,7 @@ class View {
   void Click(glm::dvec2 at) {
     const auto pixel = PixelAt(at);
     if (!pixel) return;
-    if (inputs.shift) {
+    if (shift_) {
       session_.inspected = at;
       return;
     }
@@ -680,15 +702,15 @@ class View {
 
   void Keys() {
     const ImGuiIO& io = ImGui::GetIO();
-    const std::vector<Inputs::Key> keys = std::exchange(inputs.keys, {});
+    const std::vector<Event> keys = std::exchange(keys_, {});
     if (io.WantTextInput) return;
     for (const ImWchar c : io.InputQueueCharacters) {
       if (c == '?') help_ = !help_;
       if (c == '[') session_.exposure -= 1.0 / 3.0;
       if (c == ']') session_.exposure += 1.0 / 3.0;
     }
-    for (const auto& [key, modifiers] : keys) {
-      (modifiers & GLFW_MOD_CONTROL) != 0 ? Command(key, (modifiers & GLFW_MOD_SHIFT) != 0) : Key(key);
+    for (const Event& key : keys) {
+      (key.modifiers & GLFW_MOD_CONTROL) != 0 ? Command(key.code, (key.modifiers & GLFW_MOD_SHIFT) != 0) : Key(key.code);
     }
   }
 
@@ -754,7 +776,7 @@ class View {
   }
 
   void Drop(const fs::path& file) {
-    const glm::dvec2 at = inputs.cursor - origin_;
+    const glm::dvec2 at = cursor_ - origin_;
     const auto [pane_origin, pane_size] = Pane(at);
     const auto pixel = PixelAt((at - pane_origin) / pane_size);
     const int kind = pixel ? static_cast<int>(std::abs(state_.pixels->position[*pixel].w)) : 1;
@@ -919,35 +941,41 @@ class View {
   float unit_ = 16.0f;
   int redraw_ = 3, drawn_ = 0, turn_ = 0;
   int type_ = 100;
+  // As the frames have taken them from the events.
+  glm::dvec2 cursor_{0.0};
+  std::array<bool, 3> buttons_{};
+  std::vector<Event> keys_;
+  std::vector<std::string> dropped_;  // files
+  bool shift_ = false;                // as a button went down last
   Chrome chrome_ = Chrome::kAll;
   bool was_measuring_ = false, other_type_ = false, help_ = false, trouble_ = false, done_ = false;
 };
 
+void Happened(Event event) {
+  inputs.events.push_back(std::move(event));
+  Noticed();
+}
+
 void WatchInputs(GLFWwindow* window) {
-  glfwSetCursorPosCallback(window, [](GLFWwindow*, double x, double y) {
-    inputs.cursor = {x, y};
-    Noticed();
+  glfwSetCursorPosCallback(window, [](GLFWwindow*, double x, double y) { Happened({.kind = Event::kMove, .place = {x, y}}); });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow*, int button, int action, int modifiers) {
+    Happened({.kind = Event::kButton, .code = button, .action = action, .modifiers = modifiers});
   });
-  glfwSetMouseButtonCallback(window, [](GLFWwindow*, int, int action, int modifiers) {
-    (action == GLFW_PRESS ? inputs.pressed : inputs.released) = true;
-    if (action == GLFW_PRESS) inputs.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
-    (action == GLFW_PRESS ? inputs.press : inputs.release) = inputs.cursor;
-    inputs.buttons = std::max(inputs.buttons + (action == GLFW_PRESS ? 1 : -1), 0);
-    Noticed();
+  glfwSetScrollCallback(window, [](GLFWwindow*, double x, double y) { Happened({.kind = Event::kWheel, .place = {x, y}}); });
+  glfwSetKeyCallback(window, [](GLFWwindow*, int key, int scancode, int action, int modifiers) {
+    Happened({.kind = Event::kKey, .code = key, .scancode = scancode, .action = action, .modifiers = modifiers});
   });
-  glfwSetScrollCallback(window, [](GLFWwindow*, double, double) { Noticed(); });
-  glfwSetKeyCallback(window, [](GLFWwindow*, int key, int, int action, int modifiers) {
-    if (action == GLFW_PRESS) inputs.keys.push_back({key, modifiers});
-    Noticed();
-  });
+  glfwSetCharCallback(window, [](GLFWwindow*, unsigned character) { Happened({.kind = Event::kCharacter, .code = static_cast<int>(character)}); });
   glfwSetDropCallback(window, [](GLFWwindow*, int count, const char** files) {
-    inputs.dropped.insert(inputs.dropped.end(), files, files + count);
-    Noticed();
+    Happened({.kind = Event::kDrop, .files = {files, files + count}});
   });
-  glfwSetCharCallback(window, [](GLFWwindow*, unsigned) { Noticed(); });
+  glfwSetCursorEnterCallback(window, ImGui_ImplGlfw_CursorEnterCallback);
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow*, int, int) { Noticed(); });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow*) { inputs.any = true; });
-  glfwSetWindowFocusCallback(window, [](GLFWwindow*, int) { inputs.any = true; });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* focused, int focus) {
+    ImGui_ImplGlfw_WindowFocusCallback(focused, focus);
+    inputs.any = true;
+  });
 }
 
 // The panes to begin with: those that were asked for, else LTC beside the truth.

@@ -9,6 +9,7 @@ import json
 import math
 import os
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -330,6 +331,24 @@ class ViewTest(unittest.TestCase):
         self.assertFalse(line(rows, middle))
         figures = window.leave()
         self.assertGreater(figures["input_to_picture_ms"]["count"], 0)
+
+    def test_a_slow_frame_loses_nothing(self):
+        file = self.scene()
+        window = self.window(file, "--technique", "ltc")
+        window.rest()
+        window.process.send_signal(signal.SIGSTOP)  # a frame as slow as what a hand does meanwhile
+        window.do("mousemove", WIDTH + 302, 67, "click", "1")  # the tab of the view
+        window.drag((100, 480), (200, 460))
+        window.do("mousemove", WIDTH + 163, 230, "click", "1")  # makes it the scene's
+        window.do("key", "r")  # the gizmo's ring
+        window.drag((LIGHT[0] + 59, LIGHT[1] - 59), (LIGHT[0] + 84, LIGHT[1]))
+        window.do("key", "ctrl+z", "key", "ctrl+s")
+        window.process.send_signal(signal.SIGCONT)
+        until(lambda: "saved" in window.log(), "save")
+        saved = tomllib.loads(file.read_text())
+        self.assertNotEqual(saved["camera"]["position"], [0.0, -4.0, 1.9])
+        self.assertEqual(saved["light"][0], tomllib.loads(SCENE)["light"][0])
+        window.leave()
 
     def test_a_pixel_is_copied_as_a_test_case(self):
         window = self.window(self.scene(), "--technique", "ltc")
