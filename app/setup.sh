@@ -44,4 +44,4 @@ if [ -n "$missing" ]; then
 fi
 
 [ -f build/build.ninja ] || cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON >&2
-cmake --build build >&2
+cmake --build build --parallel "$(nproc)" >&2  # more jobs than cores cost a seventh

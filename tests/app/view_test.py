@@ -161,7 +161,7 @@ class Window:
         with open(self.log_file, "w") as log:
             self.process = subprocess.Popen([PROGRAM, "view", *map(str, arguments), "--size", "{}x{}".format(*WINDOW), "--context", "osmesa", "--json"],
                                             stdout=subprocess.PIPE, stderr=log, text=True, cwd=FOLDER, env=environment() | extra)
-        self.do("search", "--sync", "--name", "AreaLab")
+        until(self.title, "window")
 
     def do(self, *arguments):
         return subprocess.run(["xdotool", *map(str, arguments)], check=True, env=environment(), timeout=30, capture_output=True,
@@ -169,6 +169,11 @@ class Window:
 
     def log(self):
         return self.log_file.read_text()
+
+    @staticmethod
+    def title():
+        """Of the window, or nothing: also where xdotool met another that was just going."""
+        return subprocess.run(["xdotool", "search", "--name", "AreaLab", "getwindowname"], env=environment(), timeout=30, capture_output=True, text=True).stdout
 
     def drag(self, begin, end, steps=6):
         self.do("mousemove", *begin, "mousedown", "1")
@@ -196,7 +201,7 @@ class Window:
     def rest(self):
         """Until its picture is whole, which the title says."""
         time.sleep(0.2)  # for what was done to arrive
-        until(lambda: "…" not in self.do("search", "--name", "AreaLab", "getwindowname"), "whole picture", 30.0)
+        until(lambda: "AreaLab" in (title := self.title()) and "…" not in title, "whole picture", 30.0)
 
     def settled(self):
         """The window once its picture is whole."""
@@ -218,8 +223,7 @@ class Window:
         self.process.wait()
         self.process.stdout.close()
         # The server takes the window down after the process: the next one must not be mistaken for it.
-        until(lambda: subprocess.run(["xdotool", "search", "--name", "AreaLab"], env=environment(), capture_output=True).stdout == b"",
-              "window gone")
+        until(lambda: not self.title(), "window gone")
 
 
 class Drop:

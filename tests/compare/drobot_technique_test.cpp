@@ -13,7 +13,7 @@
 #include "glsl/solid_angle.glsl"
 #include "glsl/dual_end.h"
 
-namespace arealab {
+namespace arealab::drobot_technique_test {
 namespace {
 
 class DrobotTechnique : public testing::Test {
@@ -248,4 +248,4 @@ TEST_F(DrobotTechnique, PointsAgainstTheBestPoint) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::drobot_technique_test

@@ -11,7 +11,7 @@
 #include "glsl/specular_albedo.glsl"
 #include "glsl/dual_end.h"
 
-namespace arealab {
+namespace arealab::oat_technique_test {
 namespace {
 
 class OatTechnique : public testing::Test {
@@ -165,4 +165,4 @@ TEST_F(OatTechnique, StandsInItsBandsAgainstTruth) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::oat_technique_test

@@ -14,7 +14,7 @@
 #include "glsl/dual_end.h"
 // clang-format on
 
-namespace arealab {
+namespace arealab::brdf_choices_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -180,4 +180,4 @@ TEST(BrdfChoices, Log1pKeepsItsDigits) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::brdf_choices_test

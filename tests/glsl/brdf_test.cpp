@@ -9,7 +9,7 @@
 #include "glsl/polar_rule.glsl"
 #include "glsl/dual_end.h"
 
-namespace arealab {
+namespace arealab::brdf_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -148,4 +148,4 @@ TEST(PolarRule, ArcDerivatives) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::brdf_test

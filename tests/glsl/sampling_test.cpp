@@ -14,7 +14,7 @@
 #include "glsl/low_discrepancy.glsl"
 #include "glsl/dual_end.h"
 
-namespace arealab {
+namespace arealab::sampling_test {
 namespace {
 
 using glm::dvec2;
@@ -137,4 +137,4 @@ TEST(Sampling, CapAndDiskAreEven) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::sampling_test

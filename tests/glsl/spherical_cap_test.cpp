@@ -10,7 +10,7 @@
 #include "glsl/spherical_cap.glsl"
 #include "glsl/dual_end.h"
 
-namespace arealab {
+namespace arealab::spherical_cap_test {
 namespace {
 
 using dual::Cap;
@@ -252,4 +252,4 @@ TEST(SolidAngle, DiskIsWithinItsStatedError) {
 }
 
 }  // namespace
-}  // namespace arealab
+}  // namespace arealab::spherical_cap_test
