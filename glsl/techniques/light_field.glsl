@@ -6,7 +6,7 @@ shapes = ["rectangle", "polygon"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
 effects = ["two_sided", "fresnel", "many_lights"]
-exact = ["lambert_rectangle", "point_limit", "additive"]
+exact = ["lambert_rectangle", "lambert_polygon", "point_limit", "additive"]
 
 [[option]]
 name = "vector"
@@ -51,6 +51,12 @@ error = 9.9
 why = "the direction alone: form factor and fall-off are lost"
 
 [[departs]]
+law = "lambert_polygon"
+when = { vector = "unit" }
+error = 14.0
+why = "the direction alone: form factor and fall-off are lost"
+
+[[departs]]
 law = "point_limit"
 when = { vector = "unit" }
 error = 21000000.0
@@ -66,8 +72,16 @@ why = "each half is as bright as the whole"
 [[departs]]
 law = "additive"
 lobe = "specular"
+when = { shape = "rectangle" }
 error = 1.0
 why = "each half has its own direction"
+
+[[departs]]
+law = "additive"
+lobe = "specular"
+when = { shape = "polygon" }
+error = 21.0
+why = "each half has its own direction, which may be that of the mirror"
 
 [[departs]]
 law = "mirror_limit"

@@ -15,8 +15,15 @@ why = "a point has no outline: dark but where the mirror ray meets it, brighter 
 
 [[departs]]
 law = "additive"
+when = { shape = ["rectangle", "tube"] }
 error = 0.56
 why = "each half is taken at its own centre"
+
+[[departs]]
+law = "additive"
+when = { shape = "polygon" }
+error = 27.0
+why = "each half is taken at its own centre, which may be where the mirror ray meets it"
 ---*/
 #include "far_field.glsl"
 

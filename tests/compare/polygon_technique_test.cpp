@@ -35,16 +35,7 @@ std::vector<PointCase> RandomPolygons(unsigned seed, int count) {
   for (int i = 0; i < count; ++i) {
     PointCase c = RandomPoint(random, LightShape::kPolygon);
     c.half_size = {random(0.2, 1.0), random(0.2, 1.0)};
-    Light light = c.Light();
-    const int corners = 3 + i % 6;
-    std::vector<glm::dvec2> outline;
-    for (int k = 0; k < corners; ++k) {
-      const double angle = (k + random(0.0, 0.6)) * glm::two_pi<double>() / corners;
-      outline.push_back(c.half_size * glm::dvec2(std::cos(angle), std::sin(angle)));
-    }
-    SetCorners(light, outline);
-    c.corners = light.corners;
-    c.half_size = light.half_size;
+    SetOutline(c, RandomOutline(random, 3 + i % 6, c.half_size));
     cases.push_back(c.Rounded());
   }
   return cases;

@@ -51,6 +51,25 @@ inline PointCase RandomPoint(PointRandom& random, LightShape shape) {
   return c.Rounded();
 }
 
+// Corners at random angles about an ellipse, counter-clockwise.
+inline std::vector<glm::dvec2> RandomOutline(PointRandom& random, int corners, const glm::dvec2& half_size) {
+  std::vector<glm::dvec2> outline;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = (k + random(0.0, 0.6)) * glm::two_pi<double>() / corners;
+    outline.push_back(half_size * glm::dvec2(std::cos(angle), std::sin(angle)));
+  }
+  return outline;
+}
+
+// Makes the case's light the polygon of these corners, in its plane from its centre, which goes to theirs.
+inline void SetOutline(PointCase& c, const std::vector<glm::dvec2>& outline) {
+  Light light = c.Light();
+  SetCorners(light, outline);
+  c.corners = light.corners;
+  c.center = light.center;
+  c.half_size = light.half_size;
+}
+
 // Points at which a careless formula divides 0 by 0 or overflows, for every shape.
 inline std::vector<PointCase> HardPoints() {
   std::vector<PointCase> cases;
