@@ -72,9 +72,10 @@ LitPart FootprintOnRectangle(Footprint footprint, vec2 half_size) {
   // Widths and shifts from the half sides, not from the ends' places: of a small footprint on a large light, or the reverse, those
   // have no digits left.
   vec2 away = abs(footprint.center);
-  vec2 width = clamp(vec2(half_side) + half_size - away, vec2(0.0), 2.0 * min(vec2(half_side), half_size));
+  vec2 inside = half_size - away;  // by itself: of a center on the edge it is exactly 0
+  vec2 width = clamp(inside + vec2(half_side), vec2(0.0), 2.0 * min(vec2(half_side), half_size));
   LitPart part;
-  part.shift = -sign(footprint.center) * clamp(0.5 * (away + vec2(half_side) - half_size), max(away - half_size, vec2(0.0)), away);
+  part.shift = -sign(footprint.center) * clamp(0.5 * (vec2(half_side) - inside), max(-inside, vec2(0.0)), away);
   part.area = width.x * width.y;
   return part;
 }
