@@ -50,7 +50,7 @@ struct FlatLight {
 
   double Area() const { return disk ? glm::pi<double>() * half.x * half.x : 4.0 * half.x * half.y; }
   double SolidAngle() const { return disk ? dual::DiskSolidAngle(point, half.x) : dual::RectangleSolidAngle(point, half); }
-  glm::dvec2 Closest(const glm::dvec2& p) const { return disk ? dual::ClosestOnDisk(p, half.x) : dual::ClosestOnRectangle(p, half); }
+  glm::dvec2 Closest(const glm::dvec2& p) const { return disk ? dual::ClosestOnDisk({}, p, half.x) : dual::ClosestOnRectangle({}, p, half); }
   // The form factor as eq. 1.15 takes it at a point of the light's plane.
   double At(const glm::dvec2& p) const {
     const glm::dvec3 to_light(p - glm::dvec2(point), -point.z);
@@ -111,9 +111,9 @@ std::vector<RepresentativePointErrors> RerunDrobotPoints(int lights, unsigned se
         const glm::dvec2 p = glm::mix(p_c, p_r, i / 400.0);
         if (std::abs(light.At(p) - integral) < std::abs(light.At(best) - integral)) best = p;
       }
-      const glm::dvec2 on_plane = dual::unit::HalfwayHit(light.point, normal_hit, glm::dvec2(0.0));
-      const std::array points{dual::unit::HalfwayHit(light.point, p_c - foot, p_r - foot), light.Closest(on_plane), on_plane,
-                              dual::sum::HalfwayHit(light.point, normal_hit, glm::dvec2(0.0))};
+      const glm::dvec2 on_plane = foot + dual::unit::HalfwayHit(light.point, normal_hit, glm::dvec2(0.0));
+      const std::array points{foot + dual::unit::HalfwayHit(light.point, p_c - foot, p_r - foot), light.Closest(on_plane), on_plane,
+                              foot + dual::sum::HalfwayHit(light.point, normal_hit, glm::dvec2(0.0))};
       for (std::size_t form = 0; form < points.size(); ++form) {
         RepresentativePointErrors& r = results[group + form];
         r.distance += glm::length(points[form] - best) / std::sqrt(light.Area()) / lights;

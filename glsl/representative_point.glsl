@@ -21,6 +21,11 @@ vec2 NearestHit(vec3 point, vec3 normal) {
   return vec2(normal.x, normal.y) * (point.z * max(normal.z, 0.0) / tangent2);
 }
 
-vec2 ClosestOnRectangle(vec2 p, vec2 half_size) { return clamp(p, -half_size, half_size); }
+// The places of the light nearest to foot + hit, from the foot as `hit` is: near the light's plane that is shorter than the
+// last digit of a place.
+vec2 ClosestOnRectangle(vec2 foot, vec2 hit, vec2 half_size) { return clamp(hit, -half_size - foot, half_size - foot); }
 
-vec2 ClosestOnDisk(vec2 p, float radius) { return p * (radius / max(radius, length(p))); }
+vec2 ClosestOnDisk(vec2 foot, vec2 hit, float radius) {
+  vec2 p = foot + hit;
+  return hit + p * (radius / max(radius, length(p)) - 1.0);
+}

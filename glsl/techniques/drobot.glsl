@@ -146,7 +146,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     vec3 local_mirror = local.normal * (2.0 * dot(local.normal, view)) - view;
 
     vec2 foot = vec2(point.x, point.y);
-    vec2 diffuse_point;
+    vec2 diffuse_hit;
     LitPart part;
     float solid_angle;
     vec2 normal_hit = NormalHit(point, local.normal);
@@ -163,12 +163,11 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
     {
       float radius = light.half_size.x;
 #if POINT_CLOSEST
-      diffuse_point = HalfwayHit(point, ClosestOnDisk(foot + normal_hit, radius) - foot,
-                                 ClosestOnDisk(foot + nearest_hit, radius) - foot);
+      diffuse_hit = HalfwayHit(point, ClosestOnDisk(foot, normal_hit, radius), ClosestOnDisk(foot, nearest_hit, radius));
 #elif POINT_HALFWAY
-      diffuse_point = ClosestOnDisk(halfway_hit, radius);
+      diffuse_hit = ClosestOnDisk(foot, halfway_hit, radius);
 #else
-      diffuse_point = halfway_hit;
+      diffuse_hit = halfway_hit;
 #endif
       part = FootprintOnDisk(footprint, radius);
 #if EXTENT_SOLID_ANGLE
@@ -182,12 +181,12 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if EFFECT_RECTANGLE
     {
 #if POINT_CLOSEST
-      diffuse_point = HalfwayHit(point, ClosestOnRectangle(foot + normal_hit, light.half_size) - foot,
-                                 ClosestOnRectangle(foot + nearest_hit, light.half_size) - foot);
+      diffuse_hit = HalfwayHit(point, ClosestOnRectangle(foot, normal_hit, light.half_size),
+                                ClosestOnRectangle(foot, nearest_hit, light.half_size));
 #elif POINT_HALFWAY
-      diffuse_point = ClosestOnRectangle(halfway_hit, light.half_size);
+      diffuse_hit = ClosestOnRectangle(foot, halfway_hit, light.half_size);
 #else
-      diffuse_point = halfway_hit;
+      diffuse_hit = halfway_hit;
 #endif
 #if FOOTPRINT_DISK
       part = FootprintOnRectangle(footprint, light.half_size);
@@ -199,7 +198,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #endif
     }
 #endif
-    vec3 to_point = vec3(diffuse_point - foot, -point.z);
+    vec3 to_point = vec3(diffuse_hit, -point.z);
     float inverse_distance = inversesqrt(dot(to_point, to_point));
 #if EXTENT_AREA
     solid_angle = light.area * point.z * inverse_distance * inverse_distance * inverse_distance;
@@ -212,7 +211,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 
 #if EFFECT_TEXTURED
     float blur = BlurLevel(dot(to_point, to_point) / light.area);
-    result.diffuse *= SampleLayer(light_solid_angle, vec3(TextureCoordinates(light, diffuse_point), light.image.x), blur).rgb;
+    result.diffuse *= SampleLayer(light_solid_angle, vec3(TextureCoordinates(light, foot + diffuse_hit), light.image.x), blur).rgb;
 #endif
 
     vec3 to_part = vec3(footprint.offset + part.shift, -point.z);

@@ -150,7 +150,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   vec3 mirror = normal * (2.0 * dot(normal, view)) - view;
   Footprint cone = ConeFootprint(from_center, mirror, EnergyConeVersine(surface.alpha, n_dot_v), true);
   if (!Lit(cone.radius > 0.0)) return result;
-  vec2 nearest = ClosestOnRectangle(cone.center, half_size);
+  vec2 nearest = ClosestOnRectangle(vec2(0.0), cone.center, half_size);
   // Over the trace's radius and, as his listing has it, a thousandth of the light's sides.
   float outside = min(length((cone.center - nearest) / (vec2(cone.radius) + 2e-3 * light.half_size)), 1.0);
   float fade = 1.0 - outside * outside * (3.0 - 2.0 * outside);

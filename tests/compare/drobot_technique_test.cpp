@@ -199,7 +199,7 @@ TEST_F(DrobotTechnique, PointsAgainstTheBestPoint) {
     const glm::dvec2 foot(point);
     const bool disk = c.shape == LightShape::kDisk;
     const auto closest = [&](const glm::dvec2& p) {
-      return disk ? dual::ClosestOnDisk(p, c.half_size.x) : dual::ClosestOnRectangle(p, c.half_size);
+      return disk ? dual::ClosestOnDisk({}, p, c.half_size.x) : dual::ClosestOnRectangle({}, p, c.half_size);
     };
     const glm::dvec2 p_c = closest(foot + dual::NormalHit(point, normal)),
                      p_r = closest(foot + dual::NearestHit(point, normal));

@@ -80,7 +80,7 @@ TEST(RepresentativePoint, NearestHitIsTheFootOrOnTheHorizon) {
 TEST(RepresentativePoint, HalfwayHitBisects) {
   const glm::dvec3 point(0.3, -0.2, 1.5);
   const glm::dvec2 a(2.0, 1.0), b(-0.5, 0.25);
-  const glm::dvec3 to_hit = OnPlane(point, dual::unit::HalfwayHit(point, a, b) - glm::dvec2(point));
+  const glm::dvec3 to_hit = OnPlane(point, dual::unit::HalfwayHit(point, a, b));
   const glm::dvec3 direction = glm::normalize(to_hit);
   EXPECT_NEAR(glm::dot(direction, glm::normalize(OnPlane(point, a))),
               glm::dot(direction, glm::normalize(OnPlane(point, b))), 1e-14);
@@ -92,14 +92,15 @@ TEST(RepresentativePoint, HalfwayHitOfTheSumIsTheMiddle) {
   const glm::dvec3 point(0.3, -0.2, 1.5);
   const glm::dvec2 a(2.0, 1.0), b(-0.5, 0.25);
   const glm::dvec3 along = OnPlane(point, a) + OnPlane(point, b);
-  const glm::dvec2 hit = glm::dvec2(point) + glm::dvec2(along) * (point.z / -along.z);
+  const glm::dvec2 hit = glm::dvec2(along) * (point.z / -along.z);
   EXPECT_NEAR(glm::length(dual::sum::HalfwayHit(point, a, b) - hit), 0.0, 1e-15);
 }
 
 TEST(RepresentativePoint, ClosestPointsOfShapes) {
-  EXPECT_EQ(dual::ClosestOnRectangle({3.0, 0.1}, {1.0, 0.5}), glm::dvec2(1.0, 0.1));
-  EXPECT_NEAR(glm::length(dual::ClosestOnDisk({3.0, 4.0}, 2.0) - glm::dvec2(1.2, 1.6)), 0.0, 1e-15);
-  EXPECT_EQ(dual::ClosestOnDisk({0.3, 0.4}, 2.0), glm::dvec2(0.3, 0.4));
+  const glm::dvec2 foot(0.5, 0.0);
+  EXPECT_EQ(dual::ClosestOnRectangle(foot, {2.5, 0.1}, {1.0, 0.5}), glm::dvec2(0.5, 0.1));
+  EXPECT_NEAR(glm::length(foot + dual::ClosestOnDisk(foot, {2.5, 4.0}, 2.0) - glm::dvec2(1.2, 1.6)), 0.0, 1e-15);
+  EXPECT_EQ(dual::ClosestOnDisk(foot, {-0.2, 0.4}, 2.0), glm::dvec2(-0.2, 0.4));
 }
 
 // At the cone's edge the half vector's density has fallen to 1/e of its peak.
