@@ -189,6 +189,8 @@ struct Event {
   std::vector<std::string> files{};
 };
 
+const glm::dvec2 kNowhere(-FLT_MAX);  // as ImGui says it of a pointer outside the window
+
 struct Inputs {
   std::optional<Clock::time_point> first;  // that no job has answered yet
   bool any = false;
@@ -367,18 +369,23 @@ class View {
   }
 
   // Hands on what was done since the last frame. ImGui 1.86 looks at keys, buttons and the pointer once a frame only, so a
-  // frame takes no more than one change of a button and nothing after it, and no key that both goes down and comes up:
-  // however slow a frame was, a tap, a click and a drag are what the hand did, where the hand did it.
+  // frame takes no more than one change of a button and nothing after it, and no key that both goes down and comes up. A
+  // tab must be under the pointer for a frame before it takes a click, so a move and a button are two frames. However
+  // slow a frame was, a tap, a click and a drag are what the hand did, where the hand did it.
   void Replay() {
     std::vector<int> went_down;
-    bool button = false;
+    bool button = false, moved = false;
     while (!inputs.events.empty() && !button) {
       const Event& next = inputs.events.front();
       if (next.kind == Event::kKey && next.action == GLFW_RELEASE && std::ranges::find(went_down, next.code) != went_down.end()) break;
+      if (next.kind == Event::kButton && moved) break;
       const Event event = std::move(inputs.events.front());
       inputs.events.pop_front();
       switch (event.kind) {
-        case Event::kMove: cursor_ = event.place; break;
+        case Event::kMove:
+          moved = moved || event.place != cursor_;
+          cursor_ = event.place;
+          break;
         case Event::kButton:
           ImGui_ImplGlfw_MouseButtonCallback(window_.window, event.code, event.action, event.modifiers);
           button = true;
@@ -401,7 +408,7 @@ class View {
     // GLFW would tell the buttons and the pointer as they are by now.
     ImGuiIO& io = ImGui::GetIO();
     std::ranges::copy(buttons_, io.MouseDown);
-    if (io.MousePos.x != -FLT_MAX) io.MousePos = {static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)};
+    io.MousePos = {static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)};
   }
 
   // Figures of what is now on the screen.
@@ -942,7 +949,7 @@ class View {
   int redraw_ = 3, drawn_ = 0, turn_ = 0;
   int type_ = 100;
   // As the frames have taken them from the events.
-  glm::dvec2 cursor_{0.0};
+  glm::dvec2 cursor_ = kNowhere;
   std::array<bool, 3> buttons_{};
   std::vector<Event> keys_;
   std::vector<std::string> dropped_;  // files
@@ -969,7 +976,9 @@ void WatchInputs(GLFWwindow* window) {
   glfwSetDropCallback(window, [](GLFWwindow*, int count, const char** files) {
     Happened({.kind = Event::kDrop, .files = {files, files + count}});
   });
-  glfwSetCursorEnterCallback(window, ImGui_ImplGlfw_CursorEnterCallback);
+  glfwSetCursorEnterCallback(window, [](GLFWwindow*, int entered) {
+    if (entered == GLFW_FALSE) Happened({.kind = Event::kMove, .place = kNowhere});
+  });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow*, int, int) { Noticed(); });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow*) { inputs.any = true; });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* focused, int focus) {
