@@ -387,7 +387,6 @@ class View {
           cursor_ = event.place;
           break;
         case Event::kButton:
-          ImGui_ImplGlfw_MouseButtonCallback(window_.window, event.code, event.action, event.modifiers);
           button = true;
           if (event.code < static_cast<int>(buttons_.size())) buttons_[static_cast<std::size_t>(event.code)] = event.action == GLFW_PRESS;
           if (event.action == GLFW_PRESS) shift_ = (event.modifiers & GLFW_MOD_SHIFT) != 0;
@@ -613,7 +612,7 @@ class View {
 
   // ---------------------------------------------------------------------------------------------- hands
 
-  glm::dvec2 Mouse() const { return glm::dvec2(ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y) - origin_; }
+  glm::dvec2 Mouse() const { return cursor_ - origin_; }
 
   bool Inside(glm::dvec2 p) const { return p.x >= 0.0 && p.y >= 0.0 && p.x < size_.x && p.y < size_.y; }
 
@@ -783,7 +782,7 @@ class View {
   }
 
   void Drop(const fs::path& file) {
-    const glm::dvec2 at = cursor_ - origin_;
+    const glm::dvec2 at = Mouse();
     const auto [pane_origin, pane_size] = Pane(at);
     const auto pixel = PixelAt((at - pane_origin) / pane_size);
     const int kind = pixel ? static_cast<int>(std::abs(state_.pixels->position[*pixel].w)) : 1;

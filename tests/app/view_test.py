@@ -184,14 +184,8 @@ class Window:
     def shot(self):
         """The bytes of a PNG of the window as it is seen."""
         count = self.log().count("wrote ")
-        for seconds in (6.0, 6.0, 20.0):  # the X server loses a key now and then on a busy machine
-            self.do("key", "F12")
-            try:
-                until(lambda: self.log().count("wrote ") > count, "screenshot", seconds)
-                break
-            except AssertionError:
-                if seconds == 20.0:
-                    raise
+        self.do("key", "F12")
+        until(lambda: self.log().count("wrote ") > count, "screenshot")
         file = FOLDER / self.log().rsplit("wrote ", 1)[1].strip().splitlines()[0]
         self.shots += 1
         kept = FOLDER / f"{self.name}_{self.shots}.png"
