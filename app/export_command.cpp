@@ -11,8 +11,10 @@
 #include "glsl/effects.h"
 #include "glsl/export.h"
 #include "glsl/light_block.h"
+#include "glsl/light_textures.h"
 #include "glsl/table.h"
 #include "scenes/error.h"
+#include "scenes/write_image.h"
 
 namespace arealab {
 namespace {
@@ -28,6 +30,17 @@ constexpr std::pair<const char*, const char*> kApertureSamplers[] = {
     {"gbuffer_first_region", "the cap of the largest contiguous region of such directions"},
     {"gbuffer_second_region", "the cap of the second largest, or of none"},
     {"gbuffer_blocked", "the cap about the mean direction that meets a surface"}};
+
+// Forms of the lights' textures, as glsl/light_textures.h makes them.
+constexpr std::pair<const char*, const char*> kLightTextures[] = {
+    {"light_image", "the texels, in the layer's upper left corner"},
+    {"light_weights", "rules of product integration of 3 x 3 nodes: a level's squares side by side, the finest in level 0"},
+    {"light_means", "means over squares"},
+    {"light_cosine", "level l blurred by what a cosine lobe throws on the light from (2^l - 1)/32 of its square root of the area away"},
+    {"light_cosine_border", "the same with what it is around the light, whose own square is 0.125 ... 0.875"},
+    {"light_solid_angle", "level l blurred by the solid angle from (2^l - 1)/32 of the square root of the area before each place"},
+    {"light_phong", "level l blurred by Phong's lobe whose trace has the radius (2^l - 1)/32 of the square root of the area"},
+    {"light_straight", "means over squares of the colours not multiplied by alpha, and of alpha"}};
 
 struct ExportArguments {
   CommonOptions common;
@@ -63,13 +76,13 @@ class ExportFolder {
   void Keep(const std::string& name, bool whole) {
     std::error_code error;
     if (whole) std::filesystem::rename(Path(name + ".part"), Path(name), error);
-    if (whole && !error) {
-      written_.push_back(name);
-      return;
-    }
+    if (whole && !error) return Add(name);
     std::filesystem::remove(Path(name + ".part"), error);
     throw InputError(fmt::format("{}: not writable; expected a folder with room", Path(name).string()));
   }
+
+  // What is in its place already.
+  void Add(const std::string& name) { written_.push_back(name); }
 
   const std::vector<std::string>& written() const { return written_; }
 
@@ -101,8 +114,35 @@ std::string CArray(const std::string& table, const TableTexels& texels) {
   return text + "};\n";
 }
 
+struct TextureLevel {
+  std::string file;
+  glm::ivec3 size{0};  // of a layer, layers
+};
+using LightTextureFiles = std::map<std::string, std::vector<TextureLevel>>;  // by form, level by level
+
+// The forms of the lights' textures that the shader samples, a file a level, its layers below each other as glTexImage3D takes them.
+LightTextureFiles WriteLightTextures(const std::vector<std::string>& forms, const std::vector<Light>& lights, ExportFolder& folder) {
+  const std::vector<ShownTexture> layers = LightTextureLayers(lights);
+  LightTextureFiles files;
+  for (const std::string& form : forms) {
+    std::vector<TextureLevels> made;
+    for (const ShownTexture& layer : layers) made.push_back(MakeTextureLevels(form, layer, layers));
+    for (std::size_t level = 0; level < made[0].levels.size(); ++level) {
+      std::vector<glm::vec4> texels;
+      for (const TextureLevels& layer : made) texels.insert(texels.end(), layer.levels[level].begin(), layer.levels[level].end());
+      const glm::ivec2 size = made[0].size >> static_cast<int>(level);
+      const auto count = static_cast<int>(layers.size());
+      const std::string file = fmt::format("{}_{}.exr", form, level);
+      WriteImageFile(folder.Path(file), OIIO::ImageSpec(size.x, size.y * count, 4, OIIO::TypeFloat), texels.data());
+      folder.Add(file);
+      files[form].push_back({file, {size, count}});
+    }
+  }
+  return files;
+}
+
 nlohmann::ordered_json InputsJson(const Variant& variant, const std::vector<Effect>& effects, Brdf brdf, int lights,
-                                  const ExportedShader& shader) {
+                                  const ExportedShader& shader, const LightTextureFiles& textures) {
   nlohmann::ordered_json json;
   json["variant"] = variant.Name();
   json["brdf"] = Name(brdf);
@@ -140,6 +180,15 @@ nlohmann::ordered_json InputsJson(const Variant& variant, const std::vector<Effe
     json["tables"].push_back({{"sampler", "table_" + table}, {"exr", "table_" + table + ".exr"}, {"c", "table_" + table + ".h"},
                               {"filter", "linear, clamped to the edge, one level"}});
   }
+  for (const std::string& sampler : shader.light_textures) {
+    const auto meaning = std::ranges::find(kLightTextures, sampler, [](const auto& form) { return std::string(form.first); })->second;
+    nlohmann::ordered_json entry = {{"sampler", sampler}, {"type", "sampler2DArray"}, {"layer_0", "white"}, {"meaning", meaning},
+                                    {"filter", "linear between texels and levels, clamped to the edge"}, {"levels", nlohmann::ordered_json::array()}};
+    for (const TextureLevel& level : textures.at(sampler)) {
+      entry["levels"].push_back({{"exr", level.file}, {"width", level.size.x}, {"height", level.size.y}, {"layers", level.size.z}});
+    }
+    json["light_textures"].push_back(std::move(entry));
+  }
   json["light_block"] = {
       {"name", "LightBlock"},
       {"layout", "std140"},
@@ -148,8 +197,8 @@ nlohmann::ordered_json InputsJson(const Variant& variant, const std::vector<Effe
       {"rows",
        {"xyz centre (m, world), w shape: 0 rectangle, 1 disk or ellipse, 2 sphere, 3 polygon, 4 tube", "xyz unit normal of the lit side = axis_x × axis_y, w 1 if lit on both sides",
         "xyz unit axis_x, w half width (m); disk and sphere: radius; ellipse: half axis; polygon: reach; tube: half its length", "xyz unit axis_y, w half height (m); tube: radius; else as above",
-        "xyz axis_x × half width, w area of one side (m²); sphere: π radius²", "xyz axis_y × half height, w corners of a polygon", "xyz radiance, linear RGB",
-        "xyz half width², half height², twice their product (m²)"}}};
+        "xyz axis_x × half width, w area of one side (m²); sphere: π radius²", "xyz axis_y × half height, w corners of a polygon or texels across",
+        "xyz radiance, linear RGB, w layer of the texture, 0 without one", "xyz half width², half height², twice their product (m²), w texels down"}}};
   if (shader.text.find("uniform CornerBlock") != std::string::npos) {
     json["corner_block"] = {{"name", "CornerBlock"},
                             {"layout", "std140"},
@@ -170,9 +219,13 @@ The above copyright notice and this permission notice shall be included in all c
 THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.
 )";
 
-std::string Readme(const Variant& variant, const std::string& stem, const std::vector<std::string>& targets, const std::vector<std::string>& tables) {
-  std::string samplers;
-  for (const std::string& table : tables) samplers += fmt::format("{}`table_{}.exr` or `table_{}.h`", samplers.empty() ? "" : ", ", table, table);
+std::string Readme(const Variant& variant, const std::string& stem, const std::vector<std::string>& targets, const ExportedShader& shader) {
+  std::string samplers, textures;
+  if (!shader.light_textures.empty()) {
+    textures = "- Lights' textures: `light_…_N.exr`, level N of an array texture, its layers below each other, the first white. Prefiltered for\n"
+               "  these pictures on lights of these proportions: `arealab export SCENE` makes them for yours.\n";
+  }
+  for (const std::string& table : shader.tables) samplers += fmt::format("{}`table_{}.exr` or `table_{}.h`", samplers.empty() ? "" : ", ", table, table);
   return fmt::format(
       R"(# {}
 {}
@@ -182,7 +235,7 @@ std::string Readme(const Variant& variant, const std::string& stem, const std::v
   `LoadLight`, `FaceLight`, `ShadeLight` per light, and add up what comes back. `to_view` is unit and above the surface.
 - Inputs: `inputs.json`. Lengths in metres, colours linear, right-handed frames; a light's rows are computed once on the CPU.
 - Tables: {}. RGBA float, linear filter, clamped to the edge; half floats serve.
-- The effects that `inputs.json` lists as off are left out because the scene was proven not to need them: other
+{}- The effects that `inputs.json` lists as off are left out because the scene was proven not to need them: other
   lights and surfaces may. Export with `--effect NAME=1`, or with `--effects`, what yours need.
 - No shadows: multiply by yours. Emitters and tone mapping are yours too.
 - In OpenGL ES the float targets need EXT_color_buffer_float and the tables OES_texture_float_linear, or take half floats.
@@ -193,7 +246,7 @@ std::string Readme(const Variant& variant, const std::string& stem, const std::v
 
 {})",
       variant.Name(), variant.technique->summary + ". " + variant.technique->citation + ".", stem, stem, stem, stem, fmt::join(targets, ", "),
-      samplers.empty() ? "none" : samplers, kLicense);
+      samplers.empty() ? "none" : samplers, textures, kLicense);
 }
 
 std::vector<Effect> NamedEffects(const std::vector<std::string>& names) {
@@ -220,6 +273,7 @@ void RunExport(const ExportArguments& arguments) {
   for (const std::string& effect : arguments.forced) name += "+effect_" + effect;
   const Variant variant = ParseVariant(techniques, name);
   std::vector<Effect> effects;
+  std::vector<Light> shown;
   Brdf brdf = *std::ranges::find(kBrdfs, arguments.brdf, [](Brdf b) { return std::string(Name(b)); });
   if (arguments.scene.empty()) {
     effects = NamedEffects(arguments.effects);
@@ -227,14 +281,12 @@ void RunExport(const ExportArguments& arguments) {
     const Scene scene = LoadScene(FindScene(arguments.scene));
     effects = SceneEffects(scene);
     brdf = scene.brdf;
+    shown = EmittingLights(scene);
     if (const auto reason = WhyUnsupported(variant, scene, effects)) {
       throw InputError(fmt::format("{}: {}; expected a technique that supports the scene", scene.file.string(), *reason));
     }
   }
   const EffectDefines defines = Defines(effects, variant.effects);
-  if (std::ranges::find(defines, std::pair<std::string, int>("EFFECT_TEXTURED", 1)) != defines.end()) {
-    throw InputError("export: textures of lights are not exported; expected a scene without them, or --effect textured=0");
-  }
   const int lights = std::ranges::find(defines, std::pair<std::string, int>("EFFECT_MANY_LIGHTS", 1)) == defines.end() ? 1 : kExportedLights;
 
   ExportFolder folder(arguments.out);
@@ -264,8 +316,9 @@ void RunExport(const ExportArguments& arguments) {
     folder.Write("table_" + table.name + ".exr", *bytes);
     folder.Write("table_" + table.name + ".h", CArray("table_" + table.name, DecodeTable(*bytes, library.DisplayPath(file))));
   }
-  folder.Write("inputs.json", InputsJson(variant, effects, brdf, lights, core).dump(1) + "\n");
-  folder.Write("README.md", Readme(variant, stem, arguments.targets, core.tables));
+  const LightTextureFiles textures = WriteLightTextures(core.light_textures, shown, folder);
+  folder.Write("inputs.json", InputsJson(variant, effects, brdf, lights, core, textures).dump(1) + "\n");
+  folder.Write("README.md", Readme(variant, stem, arguments.targets, core));
   for (const std::string& file : folder.written()) fmt::print("{}\n", folder.Path(file).string());
 }
 

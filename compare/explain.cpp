@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "compare/timing.h"
 #include "glsl/expand.h"
@@ -17,6 +18,14 @@ Estimate Inverse(const Estimate& ratio) { return {1.0 / ratio.value, 1.0 / ratio
 bool IsShape(const std::string& effect) {
   return std::ranges::any_of(kLightShapes,
                              [&](LightShape shape) { return effect == Name(shape); });
+}
+
+// Whether a scene with that effect too, of which this one has no data to draw with, could be shaded: its cycles can be counted.
+bool MayBeCounted(const Effect& effect, const Variant& variant, const Scene& scene, std::vector<Effect> effects) {
+  static const std::set<std::string> kOfData{"aperture", "textured", "sky"};
+  if (effect.on || !kOfData.contains(effect.name)) return false;
+  std::ranges::find(effects, effect.name, &Effect::name)->on = true;
+  return !WhyUnsupported(variant, scene, effects);
 }
 
 // Turned off, a shape of the scene or all lights but one would be missing: that is another scene, not a saving.
@@ -126,6 +135,13 @@ Explanation Explain(const Context& context, Renderer& renderer, const ShaderLibr
   }
   if (!options.meter) return explanation;
   programs.resize(programs.size() - ways.size());
+  for (std::size_t i = 0; options.prices && i < effects.size(); ++i) {
+    const EffectPrice& price = explanation.effects[i];
+    if (!price.asked || price.forced || !MayBeCounted(price.effect, variant, scene, effects)) continue;
+    programs.push_back(variant);
+    programs.back().effects[price.effect.name] = true;
+    turned.push_back(i);
+  }
   const auto costs = options.meter->Measure(library, programs, scene);
   for (const std::string& gpu : options.meter->gpus()) {
     const int own = costs[0].at(gpu).full.cycles;

@@ -34,7 +34,6 @@ std::string Called(const Light& light, std::size_t i) {
   return light.name.empty() ? fmt::format("light {}", i + 1) : fmt::format("light \"{}\"", light.name);
 }
 
-
 std::string WithArticle(LightShape shape) { return fmt::format("{} {}", shape == LightShape::kEllipse ? "an" : "a", Name(shape)); }
 
 double BoundingRadius(const Light& light) {
@@ -285,6 +284,13 @@ class Analysis {
     return {false, "every material is grey"};
   }
 
+  Verdict NormalMap() const {
+    for (const Material* material : materials_) {
+      if (material->normal_texture) return {true, fmt::format("material \"{}\" has a normal map; it bends the G-buffer's normals, so that shading pays nothing", material->name)};
+    }
+    return {false, "no material has a normal map"};
+  }
+
   Verdict Aperture() const {
     if (scene_.aperture) return {true, "the scene asks for visibility, baked into apertures"};
     return {false, "the scene asks for no visibility"};
@@ -415,6 +421,7 @@ constexpr Rule kRules[] = {
     {"metal", [](Analysis& scene) { return scene.Metal(); }},
     {"light_color", [](Analysis& scene) { return scene.LightColor(); }},
     {"material_color", [](Analysis& scene) { return scene.MaterialColor(); }},
+    {"normal_map", [](Analysis& scene) { return scene.NormalMap(); }},
     {"aperture", [](Analysis& scene) { return scene.Aperture(); }},
     {"textured", [](Analysis& scene) { return scene.Textured(); }},
     {"sky", [](Analysis& scene) { return scene.Sky(); }},

@@ -106,7 +106,7 @@ ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant
 
   ExportedShader shader;
   shader.text = dialect == GlslDialect::kEs300
-                    ? "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+                    ? "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp sampler2DArray;\n"
                     : "#version 330 core\n";
   shader.text += Heading(variant, effects, brdf) + "\n";
   static const std::regex binding("layout\\(binding = \\d+\\) |, binding = \\d+");
@@ -145,6 +145,8 @@ ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant
   for (const Knob& knob : variant.technique->knobs) {
     if (words.contains("knob_" + knob.name)) shader.knobs.push_back(knob.name);
   }
+  static const std::regex array("uniform sampler2DArray (\\w+);");
+  for (std::sregex_iterator found(shader.text.begin(), shader.text.end(), array), end; found != end; ++found) shader.light_textures.push_back((*found)[1]);
   return shader;
 }
 

@@ -15,6 +15,7 @@ struct ExportedShader {
   std::string text;                 // begins with #version; ends with main()
   std::vector<std::string> tables;  // that it samples, by their names in the technique's header
   std::vector<std::string> knobs;   // that it reads
+  std::vector<std::string> light_textures;  // forms of the lights' textures that it samples (glsl/light_textures.h)
 };
 
 // The lighting pass (glsl/lighting.frag) of the variant as one text: no include, no condition that the effects or the options decide,

@@ -27,7 +27,8 @@ vec3 ExactTexel(Light light, vec2 uv) {
 // The level of a blurred form for a distance or radius r: l is for r = (2^l − 1)/32 of √area (glsl/light_textures.h).
 float BlurLevel(float r2_over_area) { return log2(1.0 + 32.0 * sqrt(r2_over_area)); }
 
-vec3 MeanTexel(Light light) { return FetchLayer(light_means, ivec3(0, 0, int(light.image.x)), textureQueryLevels(light_means) - 1); }
+const int kMeanOfAll = 7;  // the level of light_means, 128 × 128 at level 0, that is one texel
+vec3 MeanTexel(Light light) { return FetchLayer(light_means, ivec3(0, 0, int(light.image.x)), kMeanOfAll); }
 #endif
 
 // Averaged over the light.

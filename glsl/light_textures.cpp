@@ -141,6 +141,13 @@ TextureLevels BlurredLevels(const ShownTexture& texture, bool border, const std:
 
 }  // namespace
 
+std::vector<ShownTexture> LightTextureLayers(const std::vector<Light>& lights) {
+  static const auto white = std::make_shared<const Image>(Image{1, 1, {glm::vec4(1.0f)}});
+  std::vector<ShownTexture> shown = ShownTextures(lights);
+  shown.insert(shown.begin(), {white, 1.0});
+  return shown;
+}
+
 TextureLevels MakeTextureLevels(const std::string& name, const ShownTexture& texture, const std::vector<ShownTexture>& like) {
   if (name == "light_image") return ImageLevels(texture, like);
   if (name == "light_weights") {
@@ -166,9 +173,7 @@ TextureLevels MakeTextureLevels(const std::string& name, const ShownTexture& tex
 LightTextures::LightTextures(const GladGLContext& gl) : gl_(gl) { Take({}); }
 
 void LightTextures::Take(const std::vector<Light>& lights) {
-  static const auto white = std::make_shared<const Image>(Image{1, 1, {glm::vec4(1.0f)}});
-  std::vector<ShownTexture> shown = ShownTextures(lights);
-  shown.insert(shown.begin(), {white, 1.0});
+  std::vector<ShownTexture> shown = LightTextureLayers(lights);
   if (shown == shown_) return;
   shown_ = std::move(shown);
   forms_.clear();

@@ -28,6 +28,9 @@ struct TextureLevels {
   std::vector<std::vector<glm::vec4>> levels;
 };
 
+// What the layers show, white first.
+std::vector<ShownTexture> LightTextureLayers(const std::vector<Light>& lights);
+
 // `name` as above. `like`: all textures of the array, since layers share sizes.
 TextureLevels MakeTextureLevels(const std::string& name, const ShownTexture& texture, const std::vector<ShownTexture>& like);
 

@@ -53,7 +53,8 @@ Radiance TexturedRectangle(Surface surface, Light light, vec3 to_view) {
   vec3 corner = vec3(dot(x_axis, to_center), dot(y_axis, to_center), dot(surface.normal, to_center)) - 0.5 * (along_u + along_v);
   float height = -dot(light.normal, to_center);
   int layer = int(light.image.x);
-  int stored = textureQueryLevels(light_weights);
+  int stored = 1;  // levels, with 3 × 3 nodes in the last
+  while ((textureSize(light_weights, 0).x / 3) >> stored > 0) ++stored;
 
   int level = 0;
   int x = 0;

@@ -41,7 +41,8 @@ vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b, bool may_be_small) {
   vec3 c = center + 0.5 * (a + b);
   if (WhollyBelow(c.z <= 0.0)) return vec3(0.0);
   bool above = WhollyAbove(c.z > a.z + b.z);
-  HorizonShares k = HorizonShares(1.0, 1.0, 1.0, 1.0);
+  HorizonShares k;
+  k.k0 = k.k1 = k.k2 = k.k3 = 1.0;
   if (!above) k = CutAtHorizon(c.z, a.z, b.z);
 
   vec3 v1 = c - k.k1 * b;
@@ -97,7 +98,8 @@ float ClippedLambert(RectangleView view) {
   float x = view.in_plane.x + 0.5 * side_x;
   float y = view.in_plane.y + 0.5 * side_y;
   float z = view.in_plane.z;
-  HorizonShares k = HorizonShares(1.0, 1.0, 1.0, 1.0);
+  HorizonShares k;
+  k.k0 = k.k1 = k.k2 = k.k3 = 1.0;
 #if EFFECT_HORIZON
   float top = n.x * x + n.y * y + n.z * z;
   if (WhollyBelow(top <= 0.0)) return 0.0;

@@ -88,6 +88,23 @@ TEST(Export, AStrangerDrawsTheSamePicture) {
   }
 }
 
+// What a light shows goes along, prefiltered as each technique wants it.
+TEST(Export, AStrangerDrawsALightsTexture) {
+  const auto context = CreateContext(ContextKind::kOsmesa);
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  const Scene scene = LoadScene(FindScene("screen"));
+  for (const std::string name : {"ltc", "ltc+border=no", "drobot", "mayaux"}) {
+    const TemporaryFolder folder;
+    ExportTo(folder.path(), "screen", name);
+    const Variant variant = ParseVariant(techniques, name);
+    const Drawn drawn = DrawOneLight(context->gl(), library, variant, scene);
+    const stranger::Output theirs = stranger::Draw(context->gl(), folder.path().string(), variant.technique->name, drawn.input);
+    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
+    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;
+  }
+}
+
 // Apertures and the sky are inputs like any other, for techniques that know of them and for those that do not.
 TEST(Export, AStrangerDrawsAperturesAndSky) {
   const auto context = CreateContext(ContextKind::kOsmesa);
@@ -113,7 +130,7 @@ TEST(Export, EveryDefaultVariantIsDecidedAndCompiles) {
   const std::vector<Technique> techniques = LoadTechniques(library);
   for (const Variant& variant : DefaultVariants(techniques)) {
     const Variant all = WithAllEffects(variant);
-    for (const char* name : {"gloss", "bulbs", "sixteen"}) {
+    for (const char* name : {"gloss", "bulbs", "sixteen", "screen"}) {
       const Scene scene = LoadScene(FindScene(name));
       if (WhyUnsupported(variant, scene)) continue;
       const std::vector<Effect> effects = SceneEffects(scene);
@@ -122,7 +139,7 @@ TEST(Export, EveryDefaultVariantIsDecidedAndCompiles) {
         const std::string text = ExportShader(library, one, effects, scene.brdf, GlslDialect::kCore330, 128).text;
         for (const char* ours : {"\n#if", "\n#else", "\n#endif", "\n#include", "EFFECT_", "AREALAB_", "PATH_", "/*---"}) EXPECT_THAT(text, Not(HasSubstr(ours)));
         EXPECT_NO_THROW(stranger::Compile(context->gl(), GL_FRAGMENT_SHADER, text));
-        if (std::string(name) == "gloss") {
+        if (std::string(name) == "gloss" || std::string(name) == "screen") {
           const std::string es = ExportShader(library, one, effects, scene.brdf, GlslDialect::kEs300, 1).text;
           const ProcessResult glslang = RunProcess({"glslangValidator", "--stdin", "-S", "frag"}, {}, es);
           ASSERT_TRUE(glslang.started) << "glslangValidator (Debian: glslang-tools)";

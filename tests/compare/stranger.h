@@ -2,6 +2,7 @@
 // G-buffer and lights are the caller's; programs, tables and uniforms are found by the names that inputs.json gives.
 #pragma once
 
+#include <OpenImageIO/imageio.h>
 #include <glad/gl.h>
 
 #include <array>
@@ -82,6 +83,29 @@ inline GLuint FloatTexture(const GladGLContext& gl, int width, int height, const
   return texture;
 }
 
+// An array texture of the levels that an entry of "light_textures" lists.
+inline GLuint ArrayTexture(const GladGLContext& gl, const std::string& folder, const nlohmann::json& levels) {
+  GLuint texture = 0;
+  gl.GenTextures(1, &texture);
+  gl.BindTexture(GL_TEXTURE_2D_ARRAY, texture);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const std::string file = folder + "/" + levels[i]["exr"].get<std::string>();
+    const auto input = OIIO::ImageInput::open(file);
+    if (!input) throw std::runtime_error(file + " is not there");
+    const int width = levels[i]["width"], height = levels[i]["height"], layers = levels[i]["layers"];
+    if (input->spec().width != width || input->spec().height != height * layers) throw std::runtime_error(file + " is of another size");
+    std::vector<float> texels(static_cast<std::size_t>(width * height * layers * 4));
+    if (!input->read_image(0, 0, 0, 4, OIIO::TypeFloat, texels.data())) throw std::runtime_error(input->geterror());
+    gl.TexImage3D(GL_TEXTURE_2D_ARRAY, static_cast<GLint>(i), GL_RGBA32F, width, height, layers, 0, GL_RGBA, GL_FLOAT, texels.data());
+  }
+  gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  gl.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()) - 1);
+  return texture;
+}
+
 // Draws the exported pass of GLSL 3.30 in the current context.
 inline Output Draw(const GladGLContext& gl, const std::string& folder, const std::string& stem, const Input& input) {
   const nlohmann::json inputs = nlohmann::json::parse(ReadText(folder + "/inputs.json"));
@@ -94,9 +118,9 @@ inline Output Draw(const GladGLContext& gl, const std::string& folder, const std
   gl.UseProgram(program);
 
   GLint unit = 0;
-  const auto bind = [&](const std::string& sampler, GLuint texture) {
+  const auto bind = [&](const std::string& sampler, GLuint texture, GLenum target = GL_TEXTURE_2D) {
     gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    gl.BindTexture(GL_TEXTURE_2D, texture);
+    gl.BindTexture(target, texture);
     gl.Uniform1i(gl.GetUniformLocation(program, sampler.c_str()), unit++);
     gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));  // what is made next is bound there
   };
@@ -109,6 +133,9 @@ inline Output Draw(const GladGLContext& gl, const std::string& folder, const std
     const std::string header = ReadText(folder + "/" + table["c"].get<std::string>());
     const std::vector<float> texels = ReadCArray(header, name);
     bind(name, FloatTexture(gl, ReadSize(header, name + "_width"), ReadSize(header, name + "_height"), texels.data(), GL_LINEAR));
+  }
+  for (const auto& form : inputs.value("light_textures", nlohmann::json::array())) {
+    bind(form["sampler"], ArrayTexture(gl, folder, form["levels"]), GL_TEXTURE_2D_ARRAY);
   }
   gl.Uniform3f(gl.GetUniformLocation(program, "view_position"), input.view_position[0], input.view_position[1], input.view_position[2]);
   gl.Uniform1i(gl.GetUniformLocation(program, "light_count"), 1);
