@@ -286,7 +286,7 @@ class Analysis {
 
   Verdict NormalMap() const {
     for (const Material* material : materials_) {
-      if (material->normal_texture) return {true, fmt::format("material \"{}\" has a normal map; it bends the G-buffer's normals, so that shading pays nothing", material->name)};
+      if (material->normal_texture) return {true, fmt::format("material \"{}\" has a normal map; it bends the normals in the G-buffer, so that shading pays nothing", material->name)};
     }
     return {false, "no material has a normal map"};
   }

@@ -244,11 +244,12 @@ GBuffer::GBuffer(const GladGLContext& gl, const ShaderLibrary& library)
   gl.VertexArrayAttribBinding(vertex_array_.id(), 0, 0);
 }
 
-const Program& GBuffer::ResolveProgram(bool apertures) {
-  std::optional<Program>& program = resolve_programs_[apertures ? 1 : 0];
+const Program& GBuffer::ResolveProgram(bool apertures, bool normal_map) {
+  std::optional<Program>& program = resolve_programs_[(apertures ? 1u : 0u) + (normal_map ? 2u : 0u)];
   if (!program) {
     program.emplace(gl_, Expand(library_, "fullscreen.vert", {}, {}, Precision::kFloat),
-                    Expand(library_, "gbuffer.frag", {}, {{"EFFECT_APERTURE", apertures ? 1 : 0}}, Precision::kFloat));
+                    Expand(library_, "gbuffer.frag", {}, {{"EFFECT_APERTURE", apertures ? 1 : 0}, {"EFFECT_NORMAL_MAP", normal_map ? 1 : 0}},
+                           Precision::kFloat));
   }
   return *program;
 }
@@ -434,7 +435,8 @@ void GBuffer::Resolve(const Geometry& geometry) {
     gl_.NamedFramebufferTexture(framebuffer_.id(), targets[3 + i], apertures ? apertures_[i].id() : 0, 0);
   }
   gl_.NamedFramebufferDrawBuffers(framebuffer_.id(), target_count, targets.data());
-  const Program& program = ResolveProgram(apertures);
+  const bool normal_map = std::ranges::any_of(geometry.texture_sets, [](const Geometry::TextureSet& set) { return set[2] != nullptr; });
+  const Program& program = ResolveProgram(apertures, normal_map);
   const CameraView& view = geometry.view;
   program.Set("view_position", view.position);
   program.Set("ray_forward", view.forward);

@@ -39,7 +39,9 @@ layout(binding = 7) uniform samplerBuffer apertures;  // a vertex's four caps: u
 layout(binding = 0) uniform usampler2D coverage;
 layout(binding = 1) uniform sampler2D base_color_texture;
 layout(binding = 2) uniform sampler2D metallic_roughness_texture;  // glTF: green × roughness, blue × metalness
+#if EFFECT_NORMAL_MAP
 layout(binding = 3) uniform sampler2D normal_texture;              // glTF: tangent space, y up
+#endif
 uniform int texture_set;           // that is bound; pixels that need another are left alone
 uniform dvec3 view_position;       // m, world
 uniform dvec3 ray_forward;         // unit: a ray is forward + x · right + y · up, x and y in [−1, 1]
@@ -171,6 +173,7 @@ void main() {
       rough *= texel.g;
       metal *= texel.b;
     }
+#if EFFECT_NORMAL_MAP
     if (draw.textures.w != 0) {
       vec3 texel = textureGrad(normal_texture, uv, uv_dx, uv_dy).xyz * 2.0 - 1.0;
       dvec3 tangent = weight_a * a.tangent.xyz + weight.x * b.tangent.xyz + weight.y * c.tangent.xyz;
@@ -179,6 +182,7 @@ void main() {
                      double(texel.y * draw.normal_scale) * bitangent + double(texel.z) * normal;
       if (dot(mapped, mapped) > 0.0lf) normal = normalize(mapped);
     }
+#endif
   }
 
 #if EFFECT_APERTURE

@@ -37,7 +37,7 @@ class GBuffer {
   void Allocate(glm::ivec2 size);
   Geometry Gather(const Scene& scene, const glm::dvec3& camera);
   void DrawCoverage(const Geometry& geometry);
-  const Program& ResolveProgram(bool apertures);
+  const Program& ResolveProgram(bool apertures, bool normal_map);
   void Resolve(const Geometry& geometry);
   GLuint Upload(const std::shared_ptr<const Image>& image);
   void ReadBack();
@@ -45,8 +45,8 @@ class GBuffer {
   const GladGLContext& gl_;
   const ShaderLibrary& library_;
   Program coverage_program_;
-  // Without apertures and with them; the latter is compiled when a scene first has some.
-  std::array<std::optional<Program>, 2> resolve_programs_;
+  // By what a scene calls for, + 1 apertures, + 2 normal maps; each is compiled when a scene first does.
+  std::array<std::optional<Program>, 4> resolve_programs_;
   GlObject vertex_array_;
   GlObject coverage_framebuffer_, framebuffer_;
   GlObject coverage_, depth_;
