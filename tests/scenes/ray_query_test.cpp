@@ -182,18 +182,19 @@ TEST(RayQuery, ProvesThatNothingIsInTheWay) {
 TEST(RayQuery, TheProofAgreesWithRays) {
   std::mt19937_64 engine(11);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  constexpr int kScenes = 1000;
   int proven = 0, blocked = 0;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < kScenes; ++i) {
     Scene scene;
     for (int k = 0; k < 3; ++k) {
-      const dvec3 at(1.5 * unit(engine), 1.5 * unit(engine), 1.2 + unit(engine));
+      const dvec3 at{1.5 * unit(engine), 1.5 * unit(engine), 1.2 + unit(engine)};  // braces: drawn in this order by every compiler
       scene.meshes.push_back(MakeBox({0.5, 0.2, 0.9}, {at, RotationFromDegrees(180.0 * at)}));
     }
     const RayQuery rays(scene);
     const bool may_block = rays.MayBlock(UpTo(0.6));
     int hits = 0;
     for (int r = 0; r < 400; ++r) {
-      const dvec3 target(0.6 * unit(engine), 0.6 * unit(engine), 2.0);
+      const dvec3 target{0.6 * unit(engine), 0.6 * unit(engine), 2.0};
       const double far = glm::length(target);
       hits += rays.Occluded(dvec3(0.0), target / far, 0.0, far) ? 1 : 0;
     }
@@ -203,9 +204,9 @@ TEST(RayQuery, TheProofAgreesWithRays) {
     proven += may_block ? 0 : 1;
     blocked += hits > 0 ? 1 : 0;
   }
-  EXPECT_GT(proven, 20);
-  EXPECT_GT(blocked, 20);
-  EXPECT_GT(proven + blocked, 180);  // the proof is seldom shy
+  EXPECT_GT(proven, kScenes / 10);
+  EXPECT_GT(blocked, kScenes / 10);
+  EXPECT_GT(proven + blocked, kScenes * 87 / 100);  // the proof is seldom shy: 902 are decided, three deviations above
 }
 
 }  // namespace
