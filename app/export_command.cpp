@@ -287,6 +287,9 @@ void RunExport(const ExportArguments& arguments) {
     }
   }
   const EffectDefines defines = Defines(effects, variant.effects);
+  if (std::ranges::find(defines, std::pair<std::string, int>("EFFECT_SKY_TEXTURE", 1)) != defines.end()) {
+    throw InputError("export: a sky's texture is not exported; expected a scene with an even sky, or --effect sky_texture=0");
+  }
   const int lights = std::ranges::find(defines, std::pair<std::string, int>("EFFECT_MANY_LIGHTS", 1)) == defines.end() ? 1 : kExportedLights;
 
   ExportFolder folder(arguments.out);

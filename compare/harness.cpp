@@ -15,8 +15,10 @@
 #include "compare/metrics.h"
 #include "compare/timing.h"
 #include "compare/truth_cache.h"
+#include "glsl/gbuffer.h"
 #include "scenes/error.h"
 #include "scenes/light_texture.h"
+#include "scenes/sky.h"
 
 namespace arealab {
 namespace {
@@ -171,17 +173,22 @@ ShadowResult Describe(const ShadowedTruth& shadowed, const RadianceImage& unshad
 
 std::vector<glm::vec3> EmissionImage(const Scene& scene, const SurfacePixels& pixels) {
   std::vector<glm::vec3> emission(pixels.size(), glm::vec3(0.0f));
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
+  const glm::ivec2 size(pixels.width, pixels.height);
+  const CameraView view = ViewOf(scene.camera, size);
+  tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
     const int kind = static_cast<int>(pixels.position[i].w);
-    if (kind == static_cast<int>(PixelKind::kBackground) && scene.sky) emission[i] = glm::vec3(*scene.sky);
-    if (kind < static_cast<int>(PixelKind::kEmitter)) continue;
+    if (kind == static_cast<int>(PixelKind::kBackground) && scene.sky) {
+      const auto width = static_cast<std::size_t>(pixels.width);
+      emission[i] = glm::vec3(SkyRadiance(*scene.sky, view.Towards((glm::dvec2(i % width, i / width) + 0.5) / glm::dvec2(size))));
+    }
+    if (kind < static_cast<int>(PixelKind::kEmitter)) return;
     const Light& light = scene.lights.at(static_cast<std::size_t>(kind - static_cast<int>(PixelKind::kEmitter)));
     emission[i] = glm::vec3(light.radiance);
-    if (!light.texture) continue;
+    if (!light.texture) return;
     const bool back = glm::dot(glm::dvec3(pixels.view_position) - light.center, light.normal) < 0.0;
     const glm::dvec2 uv = TextureCoordinates(light, glm::dvec3(pixels.position[i]), back);
     emission[i] = glm::vec3(light.radiance * TextureAt(*light.texture, uv));
-  }
+  });
   return emission;
 }
 

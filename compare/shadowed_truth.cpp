@@ -10,6 +10,7 @@
 
 #include "compare/light_sampling.h"
 #include "compare/sky_integrals.h"
+#include "compare/textured_sky.h"
 #include "compare/textured_truth.h"
 #include "compare/truth_bands.h"
 #include "compare/truth_cache.h"
@@ -222,6 +223,7 @@ struct ShadowBands {
   const Scene& scene;
   SceneLights integrator;
   SkyIntegrals sky_integrals;
+  std::shared_ptr<const TexturedSky> textured_sky;
   const SurfacePixels& pixels;
   const RadianceImage& unshadowed;
   double light_tolerance, tolerance;
@@ -250,13 +252,32 @@ struct ShadowBands {
   // Takes the unshadowed radiance of pixel i and leaves the shadowed one.
   void Shade(std::size_t i, std::vector<SampledLight>& lights, glm::vec3& diffuse, glm::vec3& specular,
              float& relative_error) const {
+    const std::optional<ShadedPixel> pixel = *textured_sky ? ShadedPixelAt(scene, pixels, i) : std::nullopt;
+    if (!pixel) return ShadeEven(i, lights, diffuse, specular, relative_error);
+    const double total = Sum(glm::dvec3(diffuse)) + Sum(glm::dvec3(specular));
+    Shaft above;
+    above.apex = pixel->point.position;
+    above.Add(pixel->point.normal, 0.0);
+    const bool hidden = rays->MayBlock(above);
+    const TexturedSky::Rest rest = textured_sky->Integrate(*pixel, hidden ? rays.get() : nullptr, rays->Origin(pixel->point.position, glm::dvec3(pixels.view_position)));
+    diffuse -= glm::vec3(rest.all.diffuse);
+    specular -= glm::vec3(rest.all.specular);
+    ShadeEven(i, lights, diffuse, specular, relative_error);
+    diffuse = glm::max(diffuse + glm::vec3(rest.free.diffuse), 0.0f);
+    specular = glm::max(specular + glm::vec3(rest.free.specular), 0.0f);
+    if (total > 0.0 && hidden) relative_error += static_cast<float>(Sum(rest.error) / total);
+  }
+
+  // The same of what lights and an even sky give.
+  void ShadeEven(std::size_t i, std::vector<SampledLight>& lights, glm::vec3& diffuse, glm::vec3& specular,
+                 float& relative_error) const {
     const double total = Sum(glm::dvec3(diffuse)) + Sum(glm::dvec3(specular));
     const std::optional<ShadedPixel> pixel = ShadedPixelAt(scene, pixels, i);
     if (!pixel || !(total > 0.0)) return;
     lights.clear();
     bool others = false;  // lights that are free
     bool sky_last = false;  // among those to be sampled
-    const glm::dvec3 sky = scene.sky.value_or(glm::dvec3(0.0));
+    const glm::dvec3& sky = textured_sky->mean();
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {
       const Light& light = scene.lights[l];
       const auto directions = LightDirections::From(pixel->point.position, pixel->point.normal, light);
@@ -352,6 +373,7 @@ BandShader MakeShader(const Scene& scene, const SurfacePixels& pixels, const Rad
   return ShadowBands{scene,
                      SceneLights(scene),
                      SkyIntegrals(scene, pixels),
+                     std::make_shared<const TexturedSky>(scene),
                      pixels,
                      unshadowed,
                      std::max(truth_options.tolerance, kLightShare * options.tolerance),

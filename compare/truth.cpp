@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "compare/sky_integrals.h"
+#include "compare/textured_sky.h"
 #include "compare/textured_truth.h"
 #include "compare/truth_bands.h"
 
@@ -42,8 +43,8 @@ std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels
 
 namespace {
 
-TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SkyIntegrals& sky_integrals, const SurfacePixels& pixels,
-                    int row_begin, int row_end, double tolerance) {
+TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SkyIntegrals& sky_integrals, const TexturedSky& textured_sky,
+                    const SurfacePixels& pixels, int row_begin, int row_end, double tolerance) {
   TruthBand band;
   auto width = static_cast<std::size_t>(pixels.width);
   std::size_t begin = static_cast<std::size_t>(row_begin) * width,
@@ -62,7 +63,7 @@ TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SkyInte
       error += glm::abs(radiance) * (albedo * s.form_factor_error +
                                      pixel->specular_weight * (f0 * s.specular_error + (1.0 - f0) * s.specular_grazing_error));
     };
-    const glm::dvec3 sky = scene.sky.value_or(glm::dvec3(0.0));  // a light stands before it
+    const glm::dvec3& sky = textured_sky.mean();  // a light stands before it
     for (std::size_t l = 0; l < scene.lights.size(); ++l) {
       const Light& light = scene.lights[l];
       const ColorIntegrals integrals = lights.Integrate(pixel->point, l, tolerance);
@@ -74,6 +75,12 @@ TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SkyInte
       if (scene.sky) add(-sky, ColorIntegrals(IntegrateLight(pixel->point, light, tolerance)));
     }
     if (scene.sky) add(sky, ColorIntegrals(sky_integrals.At(pixel->point)));
+    if (textured_sky) {
+      const TexturedSky::Rest rest = textured_sky.Integrate(*pixel);
+      diffuse = glm::max(diffuse + rest.all.diffuse, 0.0);
+      specular = glm::max(specular + rest.all.specular, 0.0);
+      error += rest.error;
+    }
     band.diffuse[i - begin] = glm::vec3(diffuse);
     band.specular[i - begin] = glm::vec3(specular);
     double total = diffuse.x + diffuse.y + diffuse.z + specular.x + specular.y + specular.z;
@@ -87,8 +94,9 @@ TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SkyInte
 }  // namespace
 
 BandShader UnshadowedBands(const Scene& scene, const SurfacePixels& pixels, double tolerance) {
-  return [&scene, lights = SceneLights(scene), sky = SkyIntegrals(scene, pixels), &pixels, tolerance](int row_begin, int row_end) {
-    return ShadeBand(scene, lights, sky, pixels, row_begin, row_end, tolerance);
+  return [&scene, lights = SceneLights(scene), sky = SkyIntegrals(scene, pixels), textured_sky = std::make_shared<const TexturedSky>(scene), &pixels,
+          tolerance](int row_begin, int row_end) {
+    return ShadeBand(scene, lights, sky, *textured_sky, pixels, row_begin, row_end, tolerance);
   };
 }
 

@@ -22,6 +22,7 @@ namespace {
 // Changes whenever the integrator's results or the layout of the files change.
 constexpr std::uint64_t kTruthVersion = 7;
 constexpr std::uint64_t kShadowVersion = 4;  // of the visibility on top of it
+constexpr std::uint64_t kTexturedSkyVersion = 1;
 struct Header {
   std::uint64_t version, width, rows;
   double seconds;
@@ -70,6 +71,12 @@ void AddVector(ContentHash& hash, const glm::dvec3& v) {
   hash.Value(v.z);
 }
 
+void AddImage(ContentHash& hash, const Image& image) {
+  hash.Value(image.width);
+  hash.Value(image.height);
+  hash.Bytes(image.pixels.data(), image.pixels.size() * sizeof(glm::vec4));
+}
+
 void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels, const TruthOptions& options) {
   hash.Value(kTruthVersion);
   hash.Value(options.tolerance);
@@ -77,7 +84,12 @@ void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels
   hash.Value(pixels.height);
   AddVector(hash, glm::dvec3(pixels.view_position));
   if (scene.brdf != Brdf::kGgx) hash.Value(scene.brdf);  // left out, the default's truths keep their names
-  if (scene.sky) AddVector(hash, *scene.sky);
+  if (scene.sky) AddVector(hash, scene.sky->radiance);
+  if (scene.sky && scene.sky->texture) {
+    hash.Value(kTexturedSkyVersion);
+    hash.Value(scene.sky->turn);
+    AddImage(hash, *scene.sky->texture);
+  }
   for (const Light& light : scene.lights) {
     hash.Value(light.shape);
     hash.Value(light.two_sided);
@@ -93,9 +105,7 @@ void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels
     }
     AddVector(hash, light.radiance);
     if (!light.texture) continue;
-    hash.Value(light.texture->width);
-    hash.Value(light.texture->height);
-    hash.Bytes(light.texture->pixels.data(), light.texture->pixels.size() * sizeof(glm::vec4));
+    AddImage(hash, *light.texture);
   }
   hash.Bytes(pixels.position.data(), pixels.position.size() * sizeof(glm::vec4));
   hash.Bytes(pixels.normal.data(), pixels.normal.size() * sizeof(glm::vec4));

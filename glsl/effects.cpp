@@ -85,6 +85,9 @@ bool IsPureMetal(const Material& material) {
 }
 
 bool IsGrey(const glm::dvec3& color) { return color.x == color.y && color.y == color.z; }
+bool IsGrey(const Image& image) {
+  return std::ranges::all_of(image.pixels, [](const glm::vec4& p) { return p.r == p.g && p.g == p.b; });
+}
 
 // Reasons for which an effect of the geometry is on; empty ones are proven off.
 struct GeometryNeeds {
@@ -261,11 +264,12 @@ class Analysis {
   Verdict LightColor() const {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       if (!IsGrey(lights_[i].radiance)) return {true, Called(lights_[i], i) + " is coloured"};
-      if (lights_[i].texture && !std::ranges::all_of(lights_[i].texture->pixels, [](const glm::vec4& p) { return p.r == p.g && p.g == p.b; })) {
+      if (lights_[i].texture && !IsGrey(*lights_[i].texture)) {
         return {true, Called(lights_[i], i) + " has a coloured texture"};
       }
     }
-    if (scene_.sky && !IsGrey(*scene_.sky)) return {true, "the sky is coloured"};
+    if (scene_.sky && !IsGrey(scene_.sky->radiance)) return {true, "the sky is coloured"};
+    if (scene_.sky && scene_.sky->texture && !IsGrey(*scene_.sky->texture)) return {true, "the sky has a coloured texture"};
     return {false, "every light is white"};
   }
 
@@ -299,6 +303,11 @@ class Analysis {
   Verdict Sky() const {
     if (scene_.sky) return {true, "the scene has a sky"};
     return {false, "the scene has no sky"};
+  }
+
+  Verdict SkyTexture() const {
+    if (scene_.sky && scene_.sky->texture) return {true, "the sky shows a texture"};
+    return {false, scene_.sky ? "the sky is the same everywhere" : "the scene has no sky"};
   }
 
   Verdict ManyLights() const {
@@ -425,6 +434,7 @@ constexpr Rule kRules[] = {
     {"aperture", [](Analysis& scene) { return scene.Aperture(); }},
     {"textured", [](Analysis& scene) { return scene.Textured(); }},
     {"sky", [](Analysis& scene) { return scene.Sky(); }},
+    {"sky_texture", [](Analysis& scene) { return scene.SkyTexture(); }},
     {"many_lights", [](Analysis& scene) { return scene.ManyLights(); }},
 };
 

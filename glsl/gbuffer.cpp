@@ -31,11 +31,7 @@ constexpr int kSphereSegments = 128;
 static_assert(sizeof(Vertex) == 12 * sizeof(float));
 static_assert(sizeof(Aperture) == GBuffer::kCaps * sizeof(glm::vec4));
 
-struct CameraView {
-  glm::dvec3 position;  // m, world: what float holds of the camera's, so that everyone means the same point
-  glm::dvec3 right, up, forward;
-  glm::dvec2 half_extent;  // of the picture at distance 1
-};
+}  // namespace
 
 CameraView ViewOf(const Camera& camera, glm::ivec2 size) {
   CameraView view;
@@ -53,6 +49,12 @@ CameraView ViewOf(const Camera& camera, glm::ivec2 size) {
   view.half_extent = {half_height * size.x / size.y, half_height};
   return view;
 }
+
+glm::dvec3 CameraView::Towards(const glm::dvec2& place) const {
+  return glm::normalize(forward + right * (half_extent.x * (2.0 * place.x - 1.0)) + up * (half_extent.y * (1.0 - 2.0 * place.y)));
+}
+
+namespace {
 
 void AddSphere(const Light& light, Mesh& mesh) {
   for (int ring = 0; ring <= kSphereRings; ++ring) {

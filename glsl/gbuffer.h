@@ -15,6 +15,17 @@
 
 namespace arealab {
 
+// What a camera sees through a picture.
+struct CameraView {
+  glm::dvec3 position;  // m, world: what float holds of the camera's, so that everyone means the same point
+  glm::dvec3 right, up, forward;
+  glm::dvec2 half_extent;  // of the picture at distance 1
+
+  // The direction, unit, to a place of the picture; (0, 0) is its upper left corner, (1, 1) its lower right.
+  glm::dvec3 Towards(const glm::dvec2& place) const;
+};
+CameraView ViewOf(const Camera& camera, glm::ivec2 size);
+
 class GBuffer {
  public:
   GBuffer(const GladGLContext& gl, const ShaderLibrary& library);

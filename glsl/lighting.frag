@@ -38,7 +38,7 @@ void AddLight(int i, Surface surface, vec3 to_view, inout vec3 diffuse, inout ve
     light.radiance = vec3(0.0);
   }
 #endif
-  light.radiance = BeforeSky(light.radiance);
+  light.radiance = BeforeSky(surface, light);
 #endif
   AddFacedLight(light, surface, to_view, diffuse, specular);
 }

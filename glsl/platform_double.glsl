@@ -16,6 +16,9 @@ dvec3 ViewPosition() { return dvec3(view_position); }
 #if EFFECT_SKY
 dvec3 SkyInput() { return dvec3(sky_radiance); }
 #endif
+#if EFFECT_SKY_TEXTURE
+double SkyTurn() { return double(sky_turn); }
+#endif
 dvec4 LightRow(int light, int row) { return dvec4(light_rows[light * LIGHT_ROWS + row]); }
 #if EFFECT_POLYGON
 dvec4 CornerRow(int light, int row) { return dvec4(corner_rows[light * CORNER_ROWS + row]); }
@@ -35,7 +38,9 @@ dvec4 SampleTable(sampler2D table, dvec2 uv) {
 
 #if EFFECT_TEXTURED
 dvec3 FetchLayer(sampler2DArray map, ivec3 texel, int level) { return dvec3(texelFetch(map, texel, level).rgb); }
+#endif
 
+#if EFFECT_TEXTURED || EFFECT_SKY_TEXTURE
 dvec4 SampleLayerOnce(sampler2DArray map, dvec3 place, int level) {
   // Not textureSize(map, level): llvmpipe asks it once for pixels whose levels differ.
   ivec2 last = max(textureSize(map, 0).xy >> level, ivec2(1)) - 1;

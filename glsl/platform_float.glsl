@@ -15,6 +15,9 @@ vec3 ViewPosition() { return view_position; }
 #if EFFECT_SKY
 vec3 SkyInput() { return sky_radiance; }
 #endif
+#if EFFECT_SKY_TEXTURE
+float SkyTurn() { return sky_turn; }
+#endif
 vec4 LightRow(int light, int row) { return light_rows[light * LIGHT_ROWS + row]; }
 #if EFFECT_POLYGON
 vec4 CornerRow(int light, int row) { return corner_rows[light * CORNER_ROWS + row]; }
@@ -25,7 +28,9 @@ vec4 SampleTable(sampler2D table, vec2 uv) { return textureLod(table, uv, 0.0); 
 
 #if EFFECT_TEXTURED
 vec3 FetchLayer(sampler2DArray map, ivec3 texel, int level) { return texelFetch(map, texel, level).rgb; }
+#endif
 
+#if EFFECT_TEXTURED || EFFECT_SKY_TEXTURE
 // Trilinear, clamped to the edge; place: uv and layer.
 vec4 SampleLayer(sampler2DArray map, vec3 place, float level) { return textureLod(map, place, level); }
 #endif

@@ -15,6 +15,9 @@ vec3 ViewPosition() { return fp16(view_position); }
 #if EFFECT_SKY
 vec3 SkyInput() { return fp16(sky_radiance); }
 #endif
+#if EFFECT_SKY_TEXTURE
+float SkyTurn() { return fp16(sky_turn); }
+#endif
 vec4 LightRow(int light, int row) { return fp16(light_rows[light * LIGHT_ROWS + row]); }
 #if EFFECT_POLYGON
 vec4 CornerRow(int light, int row) { return fp16(corner_rows[light * CORNER_ROWS + row]); }
@@ -25,7 +28,9 @@ vec4 SampleTable(sampler2D table, vec2 uv) { return fp16(textureLod(table, uv, 0
 
 #if EFFECT_TEXTURED
 vec3 FetchLayer(sampler2DArray map, ivec3 texel, int level) { return fp16(texelFetch(map, texel, level).rgb); }
+#endif
 
+#if EFFECT_TEXTURED || EFFECT_SKY_TEXTURE
 // Trilinear, clamped to the edge; place: uv and layer.
 vec4 SampleLayer(sampler2DArray map, vec3 place, float level) { return fp16(textureLod(map, place, level)); }
 #endif

@@ -25,6 +25,14 @@ layout(binding = 7) uniform sampler2DArray light_phong;          // blurred by P
 layout(binding = 15) uniform sampler2DArray light_straight;     // means of colours and of alpha, each by itself
 #endif
 
+#if EFFECT_SKY_TEXTURE
+// The sky's texture in the forms of glsl/sky_maps.h.
+layout(binding = 16) uniform sampler2DArray sky_image;
+layout(binding = 17) uniform sampler2DArray sky_lobes;
+layout(binding = 18) uniform sampler2DArray sky_cosine;
+uniform float sky_turn;  // revolutions counter-clockwise, seen from above
+#endif
+
 #define MAX_LIGHTS 256
 #define LIGHT_ROWS 8
 layout(std140, binding = 0) uniform LightBlock {
@@ -41,7 +49,7 @@ layout(std140, binding = 1) uniform CornerBlock {
 uniform vec3 view_position;  // m, world
 uniform int light_count;
 #if EFFECT_SKY
-uniform vec3 sky_radiance;  // from every direction, in the lights' unit
+uniform vec3 sky_radiance;  // from every direction, in the lights' unit; of a textured sky what a white texel sends
 #endif
 
 layout(location = 0) out vec4 out_diffuse;

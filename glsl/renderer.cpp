@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "glsl/per_pixel.h"
 #include "glsl/program.h"
 #include "glsl/shading_watch.h"
+#include "glsl/sky_maps.h"
 #include "glsl/table.h"
 #include "scenes/error.h"
 
@@ -35,6 +37,7 @@ struct Renderer::Impl {
         lights(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kLightRows, nullptr)),
         corners(MakeBuffer(gl, sizeof(glm::vec4) * kMaxLights * kCornerRows, nullptr)),
         light_textures(gl),
+        sky_maps(gl),
         fullscreen(Expand(library, "fullscreen.vert", {}, {}, Precision::kFloat)),
         tile_points(Expand(library, "tiles.vert", {}, {{"TILE_SIZE", kTileSize}}, Precision::kFloat)),
         tile_vertices(MakeVertexArray(gl)) {
@@ -52,7 +55,8 @@ struct Renderer::Impl {
   struct Pass {
     const Program* program = nullptr;
     std::vector<GLuint> tables;
-    bool textured = false;  // reads the lights' textures
+    bool textured = false;      // reads the lights' textures
+    bool sky_textured = false;  // reads the sky's
   };
   // What is drawn of a pass, and where.
   struct Part {
@@ -101,6 +105,7 @@ struct Renderer::Impl {
   GlObject lights;
   GlObject corners;
   LightTextures light_textures;
+  SkyMaps sky_maps;
   ExpandedSource fullscreen, tile_points;
   GlObject tile_vertices;
 
@@ -163,8 +168,10 @@ Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision 
   const ExpandedSource& vertex = variant.per_pixel == PerPixel::kTiles ? tile_points : fullscreen;
   std::unique_ptr<Program>& program = programs[vertex.text + source.text];
   if (!program) program = std::make_unique<Program>(gl, vertex, source);
-  Pass pass{program.get(), {}};
-  pass.textured = std::ranges::find(defines, std::pair<std::string, int>("EFFECT_TEXTURED", 1)) != defines.end();
+  Pass pass{program.get(), {}, false, false};
+  const auto has = [&](const char* define) { return std::ranges::find(defines, std::pair<std::string, int>(define, 1)) != defines.end(); };
+  pass.textured = has("EFFECT_TEXTURED");
+  pass.sky_textured = has("EFFECT_SKY_TEXTURE");
   GLuint unit = kFirstTableUnit;
   for (const arealab::Table& table : variant.technique->tables) {
     program->Set("table_" + table.name, static_cast<int>(unit++));
@@ -222,7 +229,7 @@ void Renderer::Impl::Classify(Tiling& tiling) {
   const GlObject target = MakeTexture(gl, GL_R32F, 1, tiles);
   const GlObject needs_framebuffer = MakeFramebuffer(gl);
   gl.NamedFramebufferTexture(needs_framebuffer.id(), GL_COLOR_ATTACHMENT0, target.id(), 0);
-  DrawPass({tiling.program, {}, false}, {.framebuffer = needs_framebuffer.id(), .size = tiles});
+  DrawPass({tiling.program, {}, false, false}, {.framebuffer = needs_framebuffer.id(), .size = tiles});
   std::vector<float> texels(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y));
   gl.GetTextureImage(target.id(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
   std::vector<int>& needs = tiling.needs.of_tile;
@@ -271,7 +278,9 @@ void Renderer::Impl::DrawRows(const Variant& variant, Precision precision, const
 void Renderer::Impl::DrawPass(const Pass& pass, const Part& part) {
   pass.program->Set("view_position", gbuffer.pixels().view_position);
   pass.program->Set("light_count", light_count);
-  pass.program->Set("sky_radiance", glm::vec3(scene.sky.value_or(glm::dvec3(0.0))));
+  const Sky sky = scene.sky.value_or(Sky());
+  pass.program->Set("sky_radiance", glm::vec3(sky.radiance));
+  pass.program->Set("sky_turn", static_cast<float>(sky.turn / (2.0 * std::numbers::pi)));
   gl.BindFramebuffer(GL_FRAMEBUFFER, part.framebuffer);
   gl.Viewport(0, 0, part.size.x, part.size.y);
   for (const GLenum capability : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_DEPTH_TEST}) {
@@ -288,6 +297,7 @@ void Renderer::Impl::DrawPass(const Pass& pass, const Part& part) {
     gl.BindTextureUnit(kFirstTableUnit + static_cast<GLuint>(i), pass.tables[i]);
   }
   if (pass.textured) light_textures.Bind(*pass.program);
+  if (pass.sky_textured) sky_maps.Bind(*pass.program);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, lights.id());
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 1, corners.id());
   if (part.rows > 0) {
@@ -342,6 +352,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   const std::vector<glm::vec4> rows = LightBlockRows(lights);
   impl_->gbuffer.Draw(scene, size);
   impl_->light_textures.Take(lights);
+  impl_->sky_maps.Take(scene.sky ? scene.sky->texture : nullptr);
   impl_->Allocate(size);
   impl_->light_count = static_cast<int>(lights.size());
   impl_->scene.name = scene.name;
@@ -401,7 +412,7 @@ void Renderer::DrawThrough() {
     const ExpandedSource source = Expand(impl_->library, "through.frag", {}, Defines(impl_->effects), Precision::kFloat);
     impl_->through = std::make_unique<Program>(impl_->gl, impl_->fullscreen, source);
   }
-  impl_->DrawPass({impl_->through.get(), {}, false}, {.framebuffer = impl_->framebuffer.id(), .size = impl_->size});
+  impl_->DrawPass({impl_->through.get(), {}, false, false}, {.framebuffer = impl_->framebuffer.id(), .size = impl_->size});
   impl_->gl.Finish();
 }
 

@@ -190,6 +190,7 @@ Variant WithAllEffects(Variant variant) {
   variant.effects.erase("aperture");
   variant.effects.erase("textured");
   variant.effects.erase("sky");
+  variant.effects.erase("sky_texture");
   for (const LightShape shape : kLightShapes) {
     if (std::ranges::find(technique.shapes, shape) == technique.shapes.end()) variant.effects.erase(Name(shape));
   }
@@ -342,8 +343,12 @@ std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& s
   if (scene.brdf != kSkyBrdf && calls_for("sky") && calls_for("specular")) {
     return fmt::format("{} reflects a sky by the BRDF {} alone; the scene's is {}", technique.name, Name(kSkyBrdf), brdf);
   }
+  const auto takes = [&](const char* effect) { return std::ranges::find(technique.effects, effect) != technique.effects.end(); };
+  if (takes("sky") && !takes("sky_texture") && calls_for("sky_texture")) {
+    return fmt::format("{} fills from a sky that is the same everywhere; the scene's shows a texture", technique.name);
+  }
   for (const Need& need : kNeeds) {
-    if (std::ranges::find(technique.effects, need.effect) != technique.effects.end()) continue;
+    if (takes(need.effect)) continue;
     const auto forced = variant.effects.find(need.effect);
     if ((forced != variant.effects.end() && forced->second) || calls_for(need.effect)) {
       return fmt::format("{} does not take {}", technique.name, need.what);

@@ -23,6 +23,7 @@
 #include "scenes/mesh_file.h"
 #include "scenes/scene.h"
 #include "scenes/shapes.h"
+#include "scenes/sky.h"
 
 namespace arealab {
 namespace {
@@ -334,12 +335,22 @@ class SceneReader {
     if (!table) root.FailType(*node, "sky", "a table [sky]");
     const Fields fields(file_, *table, "[sky]");
     const char* key = scene_.units == Units::kPhotometric ? "luminance" : "radiance";
-    fields.Allow({"radiance", "luminance", "color"});
+    fields.Allow({"radiance", "luminance", "color", "texture", "rotation"});
     RefuseOtherUnits(fields, fmt::format("'{}'", key));
+    Sky& sky = scene_.sky.emplace();
+    if (const toml::node* texture = fields.Find("texture")) {
+      const FileInFolder place = Resolve(fields, *texture, "texture");
+      sky.texture = fields.At(*texture, [&] { return LoadSkyTexture(place.file); });
+      sky.texture_path = *texture->value<std::string>();
+      sky.turn = glm::radians(fields.Number("rotation", kAngle, 0.0));
+    } else if (const toml::node* rotation = fields.Find("rotation")) {
+      fields.Fail(*rotation, "'rotation' turns a sky without a texture; expected both or neither");
+    }
     const toml::node& density = fields.Require(key, kRadiance.expected);
-    const glm::dvec3 radiance = ReadDensity(fields, key, density);
-    if (!(Luminance(radiance) > 0.0)) fields.Fail(density, fmt::format("[sky] emits nothing; expected {}", kRadiance.expected));
-    scene_.sky = radiance;
+    sky.radiance = ReadDensity(fields, key, density);
+    if (!(Luminance(sky.radiance * (sky.texture ? MeanSkyTexel(*sky.texture) : glm::dvec3(1.0))) > 0.0)) {
+      fields.Fail(density, fmt::format("[sky] emits nothing; expected {}", kRadiance.expected));
+    }
   }
 
   // The largest side of a plane's or box's cells, m.

@@ -127,6 +127,17 @@ struct ApertureSettings {
   double cell = 0.0;  // m: planes and boxes are cut into cells of at most this size; 0: not at all
 };
 
+// Light from every direction, behind all lights: of one radiance, or × a texture of the whole sky, see scenes/sky.h.
+struct Sky {
+  Sky(const glm::dvec3& everywhere = glm::dvec3(0.0)) : radiance(everywhere) {}  // NOLINT: a radiance is a sky
+  bool operator==(const Sky&) const = default;
+
+  glm::dvec3 radiance;                   // in the scene's unit, linear sRGB primaries
+  std::shared_ptr<const Image> texture;  // none: the radiance is everywhere
+  std::string texture_path;              // as the scene file has it
+  double turn = 0.0;                     // radians: of the texture about the world's z, counter-clockwise seen from above
+};
+
 struct Scene {
   std::string name;      // the file's stem
   std::string question;  // the file's first line, without the comment mark: what this scene asks
@@ -139,7 +150,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Light> lights;
   std::optional<ApertureSettings> aperture;  // where the scene calls for visibility
-  std::optional<glm::dvec3> sky;             // radiance from every direction, in the scene's unit, behind all lights
+  std::optional<Sky> sky;
 };
 
 // Reads and checks a scene file. Throws InputError ("file:line: what; expected what").

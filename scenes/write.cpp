@@ -301,7 +301,15 @@ void WriteMaterial(TableText& table, const Material& before, const Material& aft
   if (before.normal_scale != after.normal_scale) table.Set("normal_scale", Float(after.normal_scale));
 }
 
-void WriteSky(TableText& table, const glm::dvec3& before, const glm::dvec3& after, Units units) {
+double SkyRotation(const Sky& sky) { return glm::degrees(sky.turn); }
+
+void WriteSky(TableText& table, const Sky& sky_before, const Sky& sky_after, Units units) {
+  if (sky_before.texture_path != sky_after.texture_path) {
+    sky_after.texture ? table.Set("texture", Quoted(sky_after.texture_path)) : table.Remove("texture");
+    if (!sky_after.texture) table.Remove("rotation");
+  }
+  if (sky_after.texture && !Close(sky_before.turn, sky_after.turn)) table.Set("rotation", Number(SkyRotation(sky_after)));
+  const glm::dvec3 &before = sky_before.radiance, &after = sky_after.radiance;
   if (before == after) return;
   const std::string density = units == Units::kPhotometric ? "luminance" : "radiance";
   if (table.Find(density)->is_array()) return table.Set(density, Numbers(after));
@@ -310,8 +318,15 @@ void WriteSky(TableText& table, const glm::dvec3& before, const glm::dvec3& afte
   if (!CloseColor(hue(before), hue(after))) table.Set("color", Numbers(hue(after)));
 }
 
-std::string NewSky(const glm::dvec3& sky, Units units) {
-  return fmt::format("\n[sky]\n{} = {}\n", units == Units::kPhotometric ? "luminance" : "radiance", Numbers(sky));
+std::string NewSky(const Sky& sky, Units units) {
+  std::string text = fmt::format("\n[sky]\n{} = {}\n", units == Units::kPhotometric ? "luminance" : "radiance", Numbers(sky.radiance));
+  if (sky.texture) text += fmt::format("texture = {}\n", Quoted(sky.texture_path));
+  if (sky.texture && sky.turn != 0.0) text += fmt::format("rotation = {}\n", Number(SkyRotation(sky)));
+  return text;
+}
+
+bool SameSky(const Sky& a, const Sky& b) {
+  return a.texture_path == b.texture_path && Close(a.turn, b.turn) && glm::distance(a.radiance, b.radiance) <= 10.0 * kDigits * glm::length(b.radiance);
 }
 
 void WriteCamera(TableText& table, const Camera& before, const Camera& after) {
@@ -366,7 +381,7 @@ std::optional<std::string> Lost(const Scene& read, const Scene& after) {
     if (found == nullptr || !SameMaterial(*found, material)) return fmt::format("the material '{}'", material.name);
   }
   if (!Close(read.exposure, after.exposure)) return "the exposure";
-  if (read.sky.has_value() != after.sky.has_value() || (read.sky && glm::distance(*read.sky, *after.sky) > 10.0 * kDigits * glm::length(*after.sky))) return "the sky";
+  if (read.sky.has_value() != after.sky.has_value() || (read.sky && !SameSky(*read.sky, *after.sky))) return "the sky";
   return std::nullopt;
 }
 

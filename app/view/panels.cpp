@@ -338,21 +338,35 @@ void SkyControls(Session& session) {
   if (ImGui::Checkbox("##sky", &on)) {
     double brightest = 0.0;  // a hundredth of the brightest light to begin with
     for (const Light& light : scene.lights) brightest = std::max(brightest, Luminance(light.radiance));
-    scene.sky = on ? std::optional(glm::dvec3(0.01 * brightest)) : std::nullopt;
+    scene.sky = on ? std::optional<Sky>(glm::dvec3(0.01 * brightest)) : std::nullopt;
   }
-  Tip("Light of one radiance from every direction. Drop an image of a whole sky (latitude and longitude) on the background: its mean.");
+  Tip("Light from every direction. Drop an image of a whole sky (latitude and longitude) on the background: it shows it.");
   if (!scene.sky) return;
-  const double luminance = std::max(Luminance(*scene.sky), 1e-12);
+  glm::dvec3& sky = scene.sky->radiance;
+  const double luminance = std::max(Luminance(sky), 1e-12);
   double radiance = luminance;
+  const char* where = scene.sky->texture ? "what a white texel sends" : "the same from every direction";
   Row(scene.units == Units::kPhotometric ? "Luminance" : "Radiance", RadianceUnit(scene), "");
-  if (Scalar("##sky_radiance", radiance, static_cast<float>(0.01 * luminance), 1e-9, 1e12)) *scene.sky *= radiance / luminance;
-  Tip(fmt::format("{}, the same from every direction.", RadianceUnit(scene)));
-  glm::vec3 hue(*scene.sky / std::max({scene.sky->x, scene.sky->y, scene.sky->z}));
+  if (Scalar("##sky_radiance", radiance, static_cast<float>(0.01 * luminance), 1e-9, 1e12)) sky *= radiance / luminance;
+  Tip(fmt::format("{}, {}.", RadianceUnit(scene), where));
+  glm::vec3 hue(sky / std::max({sky.x, sky.y, sky.z}));
   Row("Colour", "linear", "");
   if (ImGui::ColorEdit3("##sky_color", &hue.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs) && Luminance(hue) > 1e-6) {
-    scene.sky = glm::dvec3(hue) * (luminance / Luminance(hue));
+    sky = glm::dvec3(hue) * (luminance / Luminance(hue));
   }
   Tip("Hue, linear sRGB; the luminance stays.");
+  if (!scene.sky->texture) return;
+  float degrees = static_cast<float>(glm::degrees(scene.sky->turn));
+  Row("Rotation", "°", "");
+  if (ImGui::SliderFloat("##sky_turn", &degrees, -180.0f, 180.0f, "%.1f")) scene.sky->turn = glm::radians(static_cast<double>(degrees));
+  Tip("Of the sky's image about z, counter-clockwise seen from above; Ctrl + click to type.");
+  Row("Image", "", "");
+  if (ImGui::Button("Even again", {-1.0f, 0.0f})) {
+    scene.sky->texture = nullptr;
+    scene.sky->texture_path.clear();
+    scene.sky->turn = 0.0;
+  }
+  Tip(fmt::format("The sky shows {}; click for the same radiance from every direction.", scene.sky->texture_path));
 }
 
 void LightsTab(PanelContext& context) {

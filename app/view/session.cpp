@@ -14,6 +14,7 @@
 #include "scenes/error.h"
 #include "scenes/light_texture.h"
 #include "scenes/replace_file.h"
+#include "scenes/sky.h"
 #include "scenes/write.h"
 
 namespace arealab {
@@ -202,40 +203,44 @@ void Session::Restore() {
   Commit();
 }
 
-void Session::ShowImage(std::size_t light_index, const fs::path& file) {
-  Light& shown = scene.lights.at(light_index);
-  if (shown.shape != LightShape::kRectangle) {
-    throw InputError(fmt::format("{}: the light '{}' is a {}; expected a rectangle to show an image", file.string(), shown.name, Name(shown.shape)));
+namespace {
+
+std::shared_ptr<const Image> Loaded(const fs::path& file, std::shared_ptr<const Image> (*load)(const fs::path&)) {
+  try {
+    return load(file);
+  } catch (const InputError& trouble) {
+    throw InputError(fmt::format("{}: {}", file.string(), trouble.what()));
   }
+}
+
+}  // namespace
+
+std::string Session::PathFromScene(const fs::path& file) const {
   std::error_code error;
   const fs::path folder = scene.file.has_parent_path() ? scene.file.parent_path() : fs::path(".");
   const fs::path relative = fs::relative(file, folder, error);
   if (error || relative.empty() || *relative.begin() == "..") {
     throw InputError(fmt::format("{}: outside {}; expected an image in the scene's folder, where the scene file can name it", file.string(), folder.string()));
   }
-  try {
-    shown.texture = LoadLightTexture(file);
-  } catch (const InputError& trouble) {
-    throw InputError(fmt::format("{}: {}", file.string(), trouble.what()));
+  return relative.generic_string();
+}
+
+void Session::ShowImage(std::size_t light_index, const fs::path& file) {
+  Light& shown = scene.lights.at(light_index);
+  if (shown.shape != LightShape::kRectangle) {
+    throw InputError(fmt::format("{}: the light '{}' is a {}; expected a rectangle to show an image", file.string(), shown.name, Name(shown.shape)));
   }
-  shown.texture_path = relative.generic_string();
+  std::string path = PathFromScene(file);
+  shown.texture = Loaded(file, LoadLightTexture);
+  shown.texture_path = std::move(path);
 }
 
 void Session::FillFrom(const fs::path& file) {
-  std::shared_ptr<const Image> image;
-  try {
-    image = LoadLightTexture(file);
-  } catch (const InputError& trouble) {
-    throw InputError(fmt::format("{}: {}", file.string(), trouble.what()));
-  }
-  glm::dvec3 sum(0.0);
-  double weights = 0.0;
-  for (int y = 0; y < image->height; ++y) {  // rows of one latitude each cover less towards the poles
-    const double weight = std::sin(glm::pi<double>() * (y + 0.5) / image->height);
-    for (int x = 0; x < image->width; ++x) sum += weight * glm::dvec3(image->pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width) + static_cast<std::size_t>(x)]);
-    weights += weight * image->width;
-  }
-  scene.sky = sum / weights;
+  std::string path = PathFromScene(file);
+  std::shared_ptr<const Image> texture = Loaded(file, LoadSkyTexture);
+  if (!scene.sky) scene.sky.emplace(glm::dvec3(1.0));
+  scene.sky->texture = std::move(texture);
+  scene.sky->texture_path = std::move(path);
 }
 
 int Session::AddLight() {

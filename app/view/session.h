@@ -27,7 +27,7 @@ struct Edits {
   std::vector<Light> lights;
   std::vector<Material> materials;
   double exposure = 0.0;
-  std::optional<glm::dvec3> sky;
+  std::optional<Sky> sky;
 };
 bool Same(const Light& a, const Light& b);
 bool Same(const Material& a, const Material& b);
@@ -108,7 +108,7 @@ class Session {
   bool HasLeftBehind() const;
   void Restore();
 
-  // Makes a light show an image that the scene file can name, or a sky have its mean. Throws InputError.
+  // Makes a light, or the sky, show an image that the scene file can name. Throws InputError.
   void ShowImage(std::size_t light_index, const std::filesystem::path& file);
   void FillFrom(const std::filesystem::path& file);
   int AddLight();     // a copy of the selected one, or a first one; its index
@@ -121,6 +121,7 @@ class Session {
   void Set(const Edits& edits);
 
   std::filesystem::path AutosaveFile() const;
+  std::string PathFromScene(const std::filesystem::path& file) const;  // as the scene file names it; throws InputError
   Scene Saved() const;  // the scene as a save would write it
 
   Scene on_disk_;

@@ -1,6 +1,7 @@
 #include "app/view/truth_picture.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "app/view/session.h"
@@ -13,8 +14,7 @@ namespace {
 
 // A part is laid out in short rows: truth is computed, and stopped, in bands of eight.
 constexpr std::size_t kRow = 64;
-constexpr int kGrids[] = {4, 2, 1};  // px between the pixels of a pass
-constexpr std::size_t kPartsOfLast = 8;
+constexpr std::size_t kGrids[] = {8, 4, 2, 1};  // px between the pixels of a pass
 
 bool SameLook(const Scene& a, const Scene& b) {
   return a.brdf == b.brdf && Same(a.camera, b.camera) && Same(Edits{a.lights, a.materials, 0.0, a.sky}, Edits{b.lights, b.materials, 0.0, b.sky});
@@ -37,17 +37,18 @@ void TruthPicture::Begin(std::shared_ptr<const Scene> scene, std::uint64_t geome
   is_known_.assign(pixels.size(), false);
   order_.clear();
   ends_.clear();
-  int before = 0;
-  for (const int grid : kGrids) {
-    for (int y = 0; y < pixels.height; y += grid) {
-      for (int x = 0; x < pixels.width; x += grid) {
-        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(pixels.width) + static_cast<std::size_t>(x);
+  const auto width = static_cast<std::size_t>(pixels.width), height = static_cast<std::size_t>(pixels.height);
+  std::size_t before = 0;
+  for (const std::size_t grid : kGrids) {
+    for (std::size_t y = 0; y < height; y += grid) {
+      for (std::size_t x = 0; x < width; x += grid) {
+        const std::size_t i = y * width + x;
         const bool done = before > 0 && x % before == 0 && y % before == 0;
         if (!done && pixels.IsSurface(i)) order_.push_back(static_cast<std::uint32_t>(i));
       }
     }
     const std::size_t first = ends_.empty() ? 0 : ends_.back(), count = order_.size() - first;
-    const std::size_t parts = grid == 1 ? kPartsOfLast : 1;
+    const std::size_t parts = before == 0 ? 1 : 8 / grid;  // shown one by one
     for (std::size_t k = 1; k <= parts; ++k) ends_.push_back(first + count * k / parts);
     before = grid;
   }
@@ -102,11 +103,14 @@ void TruthPicture::Show() {
   for (std::size_t i = 0; !complete() && i < truth_.size(); ++i) {
     if (is_known_[i] || !pixels_.IsSurface(i)) continue;
     const std::size_t x = i % width, y = i / width;
-    const std::size_t near = (y & ~std::size_t{1}) * width + (x & ~std::size_t{1}), far = (y & ~std::size_t{3}) * width + (x & ~std::size_t{3});
-    if (is_known_[near] || is_known_[far]) {
-      const std::size_t source = is_known_[near] ? near : far;
-      image->diffuse[i] = truth_.diffuse[source];
-      image->specular[i] = truth_.specular[source];
+    std::optional<std::size_t> known;  // the last is of the finest grid
+    for (const std::size_t grid : kGrids) {
+      const std::size_t corner = y / grid * grid * width + x / grid * grid;
+      if (is_known_[corner]) known = corner;
+    }
+    if (known) {
+      image->diffuse[i] = truth_.diffuse[*known];
+      image->specular[i] = truth_.specular[*known];
     } else if (stand_in_) {
       const auto of = [](std::size_t at, int to, int from) { return at * static_cast<std::size_t>(to) / static_cast<std::size_t>(from); };
       const std::size_t source = of(y, stand_in_->height, truth_.height) * static_cast<std::size_t>(stand_in_->width) + of(x, stand_in_->width, truth_.width);

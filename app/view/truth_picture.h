@@ -1,4 +1,4 @@
-// The truth of a whole picture, refined while nothing moves: a sixteenth of its pixels, a quarter, then all, in parts between
+// The truth of a whole picture, refined while nothing moves: one of 64 of its pixels, then of 16, of 4, then all, in parts between
 // which it may stop and go on later.
 #pragma once
 

@@ -220,7 +220,7 @@ class View {
       Poll();
       if (redraw_ > 0) Frame();
     }
-    if (options_.json) figures_.Print(session_.inspected && inspection_.surface ? ", " + Json(inspection_) : "");
+    if (options_.json) figures_.Print(CostsJson() + (session_.inspected && inspection_.surface ? ", " + Json(inspection_) : ""));
   }
 
   int type() const { return type_; }
@@ -434,7 +434,7 @@ class View {
 
   // What a window list and a script can see: the scene, and whether the picture is whole.
   void Title() {
-    const bool looking = inspector_ && inspector_->busy();
+    const bool looking = (inspector_ && inspector_->busy()) || (counter_ && counter_->busy());
     const bool whole = state_.full && state_.job == submitted_ && worker_.progress() >= 1.0 && !looking;
     const std::string title = session_.scene.name + (whole ? "" : " …") + " – AreaLab";
     if (title != title_) glfwSetWindowTitle(window_.window, (title_ = title).c_str());
@@ -490,6 +490,17 @@ class View {
       if (shown.name != kTruth) job.variants.push_back(shown.name);
     }
     counter_->Submit(std::move(job));
+  }
+
+  // What the cost panel says last.
+  std::string CostsJson() const {
+    std::string times, cycles, effects;
+    const auto add = [](std::string& list, const std::string& name, double value) { list += fmt::format("{}\"{}\": {:.6g}", list.empty() ? "" : ", ", name, value); };
+    for (const auto& [name, cost] : state_.costs) add(times, name, cost.ratio_to_point);
+    for (const auto& [name, count] : cycles_.variants) add(cycles, name, count);
+    for (const auto& [name, count] : cycles_.effects) add(effects, name, count);
+    if (times.empty() && cycles.empty()) return "";
+    return fmt::format(", \"cost\": {{\"ratio_to_point\": {{{}}}, \"gpu\": \"{}\", \"cycles\": {{{}}}, \"cycles_of_effects\": {{{}}}}}", times, cycles_.gpu, cycles, effects);
   }
 
   int FlickerPane() const { return static_cast<int>(Seconds(Clock::now().time_since_epoch()) / kFlickerSeconds) % 2; }
@@ -789,7 +800,7 @@ class View {
     try {
       if (kind == 0) {
         session_.FillFrom(file);
-        return Say(fmt::format("the sky is the mean of {}", file.filename().string()));
+        return Say(fmt::format("the sky shows {}", file.filename().string()));
       }
       const int light = kind >= 2 ? kind - 2 : session_.light;
       if (light < 0) throw InputError(fmt::format("{}: dropped on no light; expected one under it, or one that is selected", file.string()));

@@ -65,6 +65,7 @@ class Worker::Shading {
     // What is quick enough for a hand is never dropped, or a hand that keeps moving would see nothing.
     DrawPicture(job, number, job.size, true, divisor > 1);
     RefineTruth(job, number);
+    if (job.measure) worker_.progress_ = 0.0;
     worker_.Publish([](ViewState& state) { state.full = true; });
     if (job.measure) Measure(job, number);
   }

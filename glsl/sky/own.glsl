@@ -1,2 +1,2 @@
 // The technique knows of the sky: ShadeSky is its own.
-vec3 BeforeSky(vec3 radiance) { return radiance; }
+vec3 BeforeSky(Surface surface, Light light) { return light.radiance; }

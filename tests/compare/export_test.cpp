@@ -50,7 +50,7 @@ Drawn DrawOneLight(const GladGLContext& gl, const ShaderLibrary& library, const 
       drawn.input.gbuffer[name].assign(4 * pixels.size(), 0.0f);
     }
   }
-  const glm::vec3 sky(scene.sky.value_or(glm::dvec3(0.0)));
+  const glm::vec3 sky(scene.sky.value_or(Sky()).radiance);
   drawn.input.sky = {sky.x, sky.y, sky.z};
   drawn.image = renderer.Shade(variant);
   return drawn;

@@ -98,10 +98,10 @@ TEST(SceneWriter, TheSkyChangesComesAndGoes) {
     Scene after = before;
     after.sky = sky;
     std::string to = Edited(before, after, from);
-    EXPECT_LT(glm::distance(*Read(to).sky, sky), 1e-5 * glm::length(sky));
+    EXPECT_LT(glm::distance(Read(to).sky->radiance, sky), 1e-5 * glm::length(sky));
     return to;
   };
-  EXPECT_THAT(edited(text, 2.0 * *Read(text).sky), HasSubstr("[sky]\nradiance = 0.5   # dusk\ncolor = [0.5, 0.7, 1.0]\n"));
+  EXPECT_THAT(edited(text, 2.0 * Read(text).sky->radiance), HasSubstr("[sky]\nradiance = 0.5   # dusk\ncolor = [0.5, 0.7, 1.0]\n"));
   EXPECT_THAT(edited(text, {0.3, 0.2, 0.1}), HasSubstr("   # dusk\ncolor = [1.0, 0.6666667, 0.3333333]\n"));
   EXPECT_THAT(edited(kText, {0.3, 0.2, 0.1}), EndsWith("\n[sky]\nradiance = [0.3, 0.2, 0.1]\n"));
   edited(edited(kText, {0.3, 0.2, 0.1}), {0.1, 0.1, 0.1});
@@ -321,6 +321,31 @@ TEST_F(SceneFolder, TexturesOfLightsAreKeptAddedAndTakenAway) {
   doubled.lights.push_back(before.lights[0]);
   doubled.lights[1].name = "second";
   EXPECT_EQ(saved(doubled).lights[1].texture_path, "a.ppm");
+}
+
+TEST_F(SceneFolder, TheSkysTextureIsKeptAddedTurnedAndTakenAway) {
+  Write("a.ppm", "P3 2 1 255  255 128 0  9 9 9\n");
+  const std::string plain = kCamera + kMaterial + kSurface + kLight, text = plain + "[sky]\nradiance = 2.0  # dusk\ntexture = \"a.ppm\"\nrotation = 30.0\n";
+  const auto saved = [&](const std::string& from, const auto& edit) {
+    const Scene before = Load(from);
+    Scene after = before;
+    edit(after);
+    SaveScene(before, after);
+    return LoadScene(folder_ / "test.toml").sky;
+  };
+  const auto kept = saved(text, [](Scene& scene) { scene.lights[0].center.z = 3.0; });
+  EXPECT_EQ(kept->texture_path, "a.ppm");
+  EXPECT_NEAR(kept->turn, glm::radians(30.0), 1e-12);
+  EXPECT_EQ(kept->radiance, glm::dvec3(2.0));
+  EXPECT_EQ(kept->texture->width, 2);
+  EXPECT_NEAR(saved(text, [](Scene& scene) { scene.sky->turn = 1.0; })->turn, 1.0, 1e-6);
+  EXPECT_FALSE(saved(text, [](Scene& scene) { scene.sky->texture = nullptr, scene.sky->texture_path.clear(), scene.sky->turn = 0.0; })->texture);
+  EXPECT_FALSE(saved(text, [](Scene& scene) { scene.sky.reset(); }));
+  const auto sky = Load(text).sky;
+  const auto added = saved(plain, [&](Scene& scene) { scene.sky = sky; });
+  EXPECT_EQ(added->texture_path, "a.ppm");
+  EXPECT_NEAR(added->turn, sky->turn, 1e-6);
+  EXPECT_EQ(saved(plain + "[sky]\nradiance = 2.0\n", [&](Scene& scene) { scene.sky = sky; })->texture_path, "a.ppm");
 }
 
 }  // namespace
