@@ -25,6 +25,10 @@ const double kLastCosine = std::cos(glm::radians(89.0));
 constexpr double kPublishedLastAngle = 1.57;  // ltc_code's, just short of π/2
 constexpr int kPublishedNodes = 32;           // as many per axis as the authors' samples
 
+std::size_t LobesOf(FitKind kind) {
+  return kind == FitKind::kTwo ? 2 : 1;
+}
+
 double LastCosine(FitKind kind) {
   return kind == FitKind::kPublished ? 0.0 : kLastCosine;
 }
@@ -83,6 +87,14 @@ void Store(const View& view, const Cell& cell, std::size_t texel, LtcTables* tab
     tables->terms[texel] = glm::vec4(glm::dvec4(cell.albedo, cell.schlick, 0.0, scale));
     return;
   }
+  if (tables->kind == FitKind::kTwo) {
+    // Each lobe's form factor is 1 − its share below the horizon where a light covers the sky.
+    const auto kept = [](const fit::Terms& m) { return 0.5 * (1.0 + m[0] / std::hypot(m[0], m[1])); };
+    tables->matrix[tables->terms.size() + texel] = FromLocal(tables->storage, view.cosine, cell.second);
+    tables->terms[texel] = glm::vec4(glm::dvec4(cell.albedo * (1.0 - cell.share) / (1.0 - cell.leak), (cell.schlick - cell.second_schlick) / kept(cell.m),
+                                                cell.share / (1.0 - cell.share), cell.second_schlick / kept(cell.second)));
+    return;
+  }
   // k (1 − b) + w = albedo; the shader's bracket is LTC + (w/k) E, its factor k.
   const double k = (cell.albedo - cell.cosine) / (1.0 - cell.leak);
   tables->terms[texel] = glm::vec4(glm::dvec4(k, cell.schlick * k / cell.albedo, cell.cosine / k, scale));
@@ -118,7 +130,7 @@ LtcTables FitColumns(Brdf brdf, FitKind kind, const FitOptions& options, const s
   const int size = options.size;
   LtcTables tables{brdf, kind, OwnStorage(kind), size, {}, {}};
   const auto count = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
-  tables.matrix.resize(count);
+  tables.matrix.resize(count * LobesOf(kind));
   tables.terms.resize(count);
   Progress progress(report, static_cast<int>(columns.size()));
   const auto view_of = [&](int row, int column) {
@@ -147,6 +159,24 @@ LtcTables FitColumns(Brdf brdf, FitKind kind, const FitOptions& options, const s
     return tables;
   }
   const fit::LossQuads quads = fit::MakeLossQuads(options.rectangles);
+  if (kind == FitKind::kTwo) {
+    // Each cell is held by the next rougher one and by that of the next smaller angle: all of a diagonal at once.
+    const int last = size - 1, span = last - *std::ranges::min_element(columns);
+    std::vector<Cell> cells(count);
+    for (int diagonal = 0; diagonal <= last + span; ++diagonal) {
+      tbb::parallel_for(std::max(0, diagonal - span), std::min(diagonal, last) + 1, [&](int row) {
+        const int column = last - (diagonal - row);
+        std::vector<Cell> neighbours;
+        if (column < last) neighbours.push_back(cells[texel(row, column + 1)]);
+        if (row > 0) neighbours.push_back(cells[texel(row - 1, column)]);
+        const View view = view_of(row, column);
+        const Cell& cell = cells[texel(row, column)] = fit::FitPairCell(view, quads, Settings(kind), row == 0, neighbours);
+        Store(view, cell, texel(row, column), &tables);
+      });
+      if (report) report((diagonal + 1.0) / (last + span + 1));
+    }
+    return tables;
+  }
   tbb::parallel_for(std::size_t{0}, columns.size(), [&](std::size_t index) {
     const int column = columns[index];
     Cell cell;
@@ -170,6 +200,8 @@ std::string Stem(FitKind kind) {
       return "horizon";
     case FitKind::kPublished:
       return "l3";
+    case FitKind::kTwo:
+      return "two";
   }
   return {};
 }
@@ -185,6 +217,8 @@ std::string FilePrefix(FitKind kind) {
       return "polygon_one_true";
     case FitKind::kPublished:
       return "l3_one_lobe";
+    case FitKind::kTwo:
+      return "polygon_two_lobe";
   }
   return {};
 }
@@ -192,21 +226,22 @@ std::string FilePrefix(FitKind kind) {
 constexpr std::array kFrameNames{"mirror", "normal"};
 constexpr std::array kNormNames{"middle", "none", "last"};
 constexpr std::array kAxisNames{"sqrt", "cos", "theta"};
-constexpr std::array kKinds{FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished};
+constexpr std::array kKinds{FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished, FitKind::kTwo};
 
-void WriteExr(const std::filesystem::path& file, int size, int channels, const float* values) {
-  OIIO::ImageSpec spec(size, size, channels, OIIO::TypeDesc::FLOAT);
+void WriteExr(const std::filesystem::path& file, int width, int height, int channels, const float* values) {
+  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
   WriteImageFile(file, spec, values);
 }
 
-std::vector<glm::vec4> ReadExr(const std::filesystem::path& file, int* size) {
+// Of `squares` one above the other.
+std::vector<glm::vec4> ReadExr(const std::filesystem::path& file, std::size_t squares, int* size) {
   const auto input = OIIO::ImageInput::open(file.string());
   if (!input) throw InputError(fmt::format("{}: cannot be read; expected a float EXR", file.string()));
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.nchannels != 4 || spec.width != spec.height || spec.width < 2)
-    throw InputError(fmt::format("{}: {} × {} with {} channels; expected a square of 4 channels",
-                                 file.string(), spec.width, spec.height, spec.nchannels));
+  if (spec.nchannels != 4 || spec.width * static_cast<int>(squares) != spec.height || spec.width < 2)
+    throw InputError(fmt::format("{}: {} × {} with {} channels; expected {} of 4 channels", file.string(), spec.width,
+                                 spec.height, spec.nchannels, squares == 1 ? "a square" : "two squares"));
   *size = spec.width;
   std::vector<glm::vec4> texels(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
   if (!input->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, texels.data()))
@@ -304,21 +339,30 @@ LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v) {
   const double y = std::clamp(AxisPosition(tables.kind, tables.storage.axis, cosine), 0.0, 1.0) * last;
   const int column = std::min(static_cast<int>(x), last - 1), row = std::min(static_cast<int>(y), last - 1);
   const double fx = x - column, fy = y - row;
-  const auto mix = [&](const std::vector<glm::vec4>& texels) {
+  const auto mix = [&](const std::vector<glm::vec4>& texels, std::size_t first = 0) {
     const auto at = [&](int j, int i) {
-      return glm::dvec4(texels[static_cast<std::size_t>((row + j) * tables.size + column + i)]);
+      return glm::dvec4(texels[first + static_cast<std::size_t>((row + j) * tables.size + column + i)]);
     };
     return (at(0, 0) * (1.0 - fx) + at(0, 1) * fx) * (1.0 - fy) +
            (at(1, 0) * (1.0 - fx) + at(1, 1) * fx) * fy;
   };
   const glm::dvec4 terms = mix(tables.terms);
-  return {ToLocal(tables.storage, cosine, mix(tables.matrix), terms.w), terms};
+  LtcLookup look{ToLocal(tables.storage, cosine, mix(tables.matrix), terms.w), terms};
+  if (tables.kind == FitKind::kTwo) look.second = ToLocal(tables.storage, cosine, mix(tables.matrix, tables.terms.size()), terms.w);
+  return look;
+}
+
+LtcLookup NodeLookup(const LtcTables& tables, int row, int column) {
+  const auto texel = static_cast<std::size_t>(row * tables.size + column);
+  const double cosine = NodeCosine(tables.kind, tables.storage.axis, row, tables.size);
+  const glm::dvec4 terms = tables.terms[texel];
+  LtcLookup look{ToLocal(tables.storage, cosine, tables.matrix[texel], terms.w), terms};
+  if (tables.kind == FitKind::kTwo) look.second = ToLocal(tables.storage, cosine, tables.matrix[tables.terms.size() + texel], terms.w);
+  return look;
 }
 
 glm::dvec4 NodeMatrix(const LtcTables& tables, int row, int column) {
-  const auto texel = static_cast<std::size_t>(row * tables.size + column);
-  return ToLocal(tables.storage, NodeCosine(tables.kind, tables.storage.axis, row, tables.size),
-                 tables.matrix[texel], tables.terms[texel].w);
+  return NodeLookup(tables, row, column).m;
 }
 
 double ClippedSphere(double y, double l) {
@@ -357,10 +401,10 @@ namespace {
 void WriteLtc(const std::filesystem::path& folder, const LtcTables& own) {
   for (const LtcStorage& storage : StoragesOf(own.brdf, own.kind)) {
     const LtcTables tables = storage == own.storage ? own : Restored(own, storage);
-    WriteExr(folder / MatrixFile(own.brdf, own.kind, storage), own.size, 4, &tables.matrix[0].x);
+    WriteExr(folder / MatrixFile(own.brdf, own.kind, storage), own.size, own.size * static_cast<int>(LobesOf(own.kind)), 4, &tables.matrix[0].x);
     const bool first_of_axis = storage.axis != LtcAxis::kSqrt || storage == own.storage;
     if (first_of_axis && storage.norm == LtcNorm::kMiddle)
-      WriteExr(folder / TermsFile(own.brdf, own.kind, storage.axis), own.size, 4, &tables.terms[0].x);
+      WriteExr(folder / TermsFile(own.brdf, own.kind, storage.axis), own.size, own.size, 4, &tables.terms[0].x);
   }
 }
 
@@ -385,7 +429,7 @@ void FitTables(const std::filesystem::path& folder, const FitOptions& options,
       if (progress) progress((static_cast<double>(i) + done) / static_cast<double>(wanted.size()));
     };
     if (name == "sphere") {
-      WriteExr(folder / "sphere.exr", options.size, 1, FitSphere(options.size).data());
+      WriteExr(folder / "sphere.exr", options.size, options.size, 1, FitSphere(options.size).data());
       part(1.0);
       continue;
     }
@@ -402,9 +446,9 @@ LtcTables ReadLtcTables(const std::filesystem::path& folder, Brdf brdf, FitKind 
   tables.kind = kind;
   tables.storage = storage;
   const std::filesystem::path matrix = folder / MatrixFile(brdf, kind, storage);
-  tables.matrix = ReadExr(matrix, &tables.size);
+  tables.matrix = ReadExr(matrix, LobesOf(kind), &tables.size);
   int terms_size = 0;
-  tables.terms = ReadExr(folder / TermsFile(brdf, kind, storage.axis), &terms_size);
+  tables.terms = ReadExr(folder / TermsFile(brdf, kind, storage.axis), 1, &terms_size);
   if (terms_size != tables.size)
     throw InputError(
         fmt::format("{}: sizes {} and {}; expected the same", matrix.string(), tables.size, terms_size));

@@ -13,7 +13,8 @@
 // local directions to cosine space. What was fitted, once each (the stem that `arealab fit --table` takes):
 //   polygon_one_lobe (ltc_ggx_polygon)    ours, on polygons
 //   polygon_cosine_lobe (ltc_ggx_cosine)  the same beside a signed share of the plain cosine lobe
-//   polygon_one_true (ltc_ggx_horizon)    the same for a shader that clips at the surface's horizon too
+//   polygon_two_lobe (ltc_ggx_two)        two lobes with matrices of their own, the second's table below the first's
+//   polygon_one_true (ltc_ggx_horizon)    the same as the first for a shader that clips at the surface's horizon too
 //   l3_one_lobe (ltc_ggx_l3)              the published kind [Heitz et al. 2016]
 // for ggx; the other BRDFs have the first and the last.
 // and how the lobes are stored, which moves what lies between the nodes:
@@ -32,9 +33,11 @@
 // ltc_ggx_FIT_LOBES_HORIZON_AXIS_terms.exr: R, G, B, A = magnitude, Schlick term, cosine weight, L, so that
 //     specular = (LTC + B · E) · (F0 · (R − G) + G) · radiance,
 //   LTC the transformed polygon's form factor (clipped at z = 0 after M⁻¹) and E the polygon's own (clipped
-//   at the true horizon; the diffuse integral). With b the LTC's share below the true horizon, b = ½(1 −
+//   at the true horizon; the diffuse integral), or of two lobes the second's. With b the LTC's share below the true horizon, b = ½(1 −
 //   m0/√(m0² + m1²)): ours, R = albedo/(1 − b + B) and G = ∫ρ(1 − v·h)⁵/(1 − b + B): with F = 1 and a light
-//   that covers the whole sky the result is the albedo; B = 0 but in the cosine table. l3, R = albedo, G =
+//   that covers the whole sky the result is the albedo; B = 0 but in the cosine table and, at most 1, in that of two lobes. There R = albedo (1 − s)/(1 − b),
+//   B = s/(1 − s) and, in place of L, A = the second's Schlick term, s and b of the two together: specular = LTC · (F0 · (R − G) + G) +
+//   E · (F0 · (R B − A) + A). l3, R = albedo, G =
 //   ∫ρ(1 − v·h)⁵, B = 0.
 // sphere.exr, one channel [Snyder 1996; Hill & Heitz 2016]: column i is y = 2i/(size − 1) − 1, the cosine of
 // the angle
@@ -55,7 +58,7 @@
 
 namespace arealab {
 
-enum class FitKind { kPolygon, kCosine, kHorizon, kPublished };
+enum class FitKind { kPolygon, kCosine, kHorizon, kPublished, kTwo };
 
 enum class LtcFrame { kMirror, kNormal };
 enum class LtcNorm { kMiddle, kNone, kLast };
@@ -75,7 +78,7 @@ struct LtcTables {
   FitKind kind = FitKind::kPolygon;
   LtcStorage storage;
   int size = 0;
-  std::vector<glm::vec4> matrix;  // row-major, [row · size + column]
+  std::vector<glm::vec4> matrix;  // row-major, [row · size + column]; of two lobes the second's after the first's
   std::vector<glm::vec4> terms;
 };
 
@@ -84,10 +87,12 @@ struct LtcTables {
 struct LtcLookup {
   glm::dvec4 m;
   glm::dvec4 terms;
+  glm::dvec4 second{1.0, 0.0, 0.0, 1.0};  // M⁻¹ of the lobe that terms.z weighs: the cosine's, or the second's
 };
 LtcLookup Look(const LtcTables& tables, double roughness, double n_dot_v);
 
-// M⁻¹ of a node, in the local frame.
+// What a node holds, and its first M⁻¹.
+LtcLookup NodeLookup(const LtcTables& tables, int row, int column);
 glm::dvec4 NodeMatrix(const LtcTables& tables, int row, int column);
 
 // The same lobes in another storage: at its nodes what Look finds.

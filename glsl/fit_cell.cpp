@@ -12,44 +12,64 @@ namespace {
 constexpr int kAlbedoNodes = 48;       // relative error of the albedo at most 4e-8 (measured, against 192)
 constexpr int kPublishedSamples = 32;  // per axis, ltc_code's
 
+template <int kCount>
+using Vector = Eigen::Matrix<double, kCount, 1>;
+
 // Four terms of P and, where it is free, the weight of the cosine lobe.
-using Unknowns = Eigen::Matrix<double, 5, 1>;
-using Square = Eigen::Matrix<double, 5, 5>;
+using Unknowns = Vector<5>;
+// Four terms of one lobe, four of another, and the other's share.
+using PairUnknowns = Vector<9>;
 
-struct Expansion {  // of a loss about a point: value, gradient/2 and the Gauss–Newton matrix/2
+template <int kCount>
+struct ExpansionOf {  // of a loss about a point: value, gradient/2 and the Gauss–Newton matrix/2
   double loss = 0.0;
-  Unknowns gradient = Unknowns::Zero();
-  Square hessian = Square::Zero();
+  Vector<kCount> gradient = Vector<kCount>::Zero();
+  Eigen::Matrix<double, kCount, kCount> hessian = Eigen::Matrix<double, kCount, kCount>::Zero();
 
-  void Add(double residual, const Unknowns& jacobian, double weight) {
+  void Add(double residual, const Vector<kCount>& jacobian, double weight) {
     loss += weight * residual * residual;
     gradient += (weight * residual) * jacobian;
     AddSquare(jacobian, weight);
   }
   // Its lower triangle; written out, it is faster than Eigen's general rank update.
-  void AddSquare(const Unknowns& jacobian, double weight) {
-    for (int column = 0; column < 5; ++column) {
+  void AddSquare(const Vector<kCount>& jacobian, double weight) {
+    for (int column = 0; column < kCount; ++column) {
       const double scaled = weight * jacobian[column];
-      for (int row = column; row < 5; ++row) hessian(row, column) += scaled * jacobian[row];
+      for (int row = column; row < kCount; ++row) hessian(row, column) += scaled * jacobian[row];
     }
   }
 };
+using Expansion = ExpansionOf<5>;
+
+bool IsLobe(const Terms& p) {
+  return p[0] > 0.0 && p[3] > 0.0 && Determinant(p) > 0.0;
+}
 
 bool Admissible(const Unknowns& p) {
-  return p.allFinite() && p[0] > 0.0 && p[3] > 0.0 && Determinant(p.head<4>()) > 0.0;
+  return p.allFinite() && IsLobe(p.head<4>());
+}
+
+bool Admissible(const PairUnknowns& p) {
+  return p.allFinite() && IsLobe(p.head<4>()) && IsLobe(p.segment<4>(4));
+}
+
+// Puts a step's end where it may be: the second of two lobes is the lesser, or they could change roles from cell to cell.
+void Confine(Unknowns&) {}
+void Confine(PairUnknowns& p) {
+  p[8] = std::clamp(p[8], 0.0, 0.5);
 }
 
 // Levenberg–Marquardt on the active unknowns: damping × 0.1 after an accepted step, × 10 after a refused one
 // [Marquardt 1963]. Ends when a step gains less than `gain` of the loss.
-template <typename Function>
-double Minimise(const Function& expand, Unknowns* p, const std::array<bool, 5>& active, int most_steps,
+template <typename Function, int kCount>
+double Minimise(const Function& expand, Vector<kCount>* p, const std::array<bool, static_cast<std::size_t>(kCount)>& active, int most_steps,
                 double gain) {
   double damping = 1e-3;
-  Expansion here = expand(*p);
+  ExpansionOf<kCount> here = expand(*p);
   for (int step = 0; step < most_steps; ++step) {
-    Square matrix = here.hessian.selfadjointView<Eigen::Lower>();
-    Unknowns right = -here.gradient;
-    for (int i = 0; i < 5; ++i) {
+    Eigen::Matrix<double, kCount, kCount> matrix = here.hessian.template selfadjointView<Eigen::Lower>();
+    Vector<kCount> right = -here.gradient;
+    for (int i = 0; i < kCount; ++i) {
       if (active[static_cast<std::size_t>(i)]) {
         matrix(i, i) *= 1.0 + damping;
       } else {
@@ -59,13 +79,14 @@ double Minimise(const Function& expand, Unknowns* p, const std::array<bool, 5>& 
         right[i] = 0.0;
       }
     }
-    const Unknowns trial = *p + matrix.ldlt().solve(right);
+    Vector<kCount> trial = *p + matrix.ldlt().solve(right);
+    Confine(trial);
     if (!Admissible(trial)) {
       damping *= 10.0;
       if (damping > 1e8) break;
       continue;
     }
-    Expansion there = expand(trial);
+    ExpansionOf<kCount> there = expand(trial);
     if (there.loss <= here.loss) {
       const double gained = here.loss - there.loss;
       *p = trial;
@@ -184,6 +205,17 @@ DensityStage FitDensity(const View& view, const Nodes& nodes, const Whitening& w
   return best;
 }
 
+// Of one lobe or two; 1/sr.
+double Density(const Cell& cell, const glm::dvec3& direction) {
+  const double first = LtcDensity(cell.m, direction, 1.0, nullptr);
+  return cell.share == 0.0 ? first : (1.0 - cell.share) * first + cell.share * LtcDensity(cell.second, direction, 1.0, nullptr);
+}
+
+double UpperQuadIntegral(const Cell& cell, const Quad& quad) {
+  const double first = UpperQuadIntegral(cell.m, quad);
+  return cell.share == 0.0 ? first : (1.0 - cell.share) * first + cell.share * UpperQuadIntegral(cell.second, quad);
+}
+
 Cell MakeCell(const Whitening& whitening, const LobeMoments& moments, const Unknowns& p) {
   Cell cell;
   cell.m = whitening.ToLocal(p.head<4>());
@@ -205,6 +237,15 @@ glm::dvec3 Undo(const Terms& m, const glm::dvec3& w) {
 // with 48, 0.8 % with 64.
 int MaskNodes(const View& view, int nodes) {
   return std::clamp(static_cast<int>(nodes * std::sqrt(0.35 / view.cosine)) / 2 * 2, nodes, 64);
+}
+
+// Of the squared errors of each integral: the first `world` quads and the others, each over their sum of squares.
+std::vector<double> LossWeights(const std::vector<double>& wanted, std::size_t world, double lobe_share) {
+  double total_world = 0.0, total_lobe = 0.0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) (i < world ? total_world : total_lobe) += wanted[i] * wanted[i];
+  std::vector<double> weight;
+  for (std::size_t i = 0; i < wanted.size(); ++i) weight.push_back(i < world ? (1.0 - lobe_share) / total_world : lobe_share / total_lobe);
+  return weight;
 }
 
 // Sums over the nodes inside a quad.
@@ -284,12 +325,12 @@ std::vector<double> LobeIntegrals(const View& view, const std::vector<Quad>& qua
   std::vector<double> residual(both.size());
   for (std::size_t i = 0; i < both.size(); ++i)
     residual[i] =
-        both.density[i] - magnitude * LtcDensity(control.m, {both.x[i], both.y[i], both.z[i]}, 1.0, nullptr);
+        both.density[i] - magnitude * Density(control, {both.x[i], both.y[i], both.z[i]});
   const MaskedSum masked(both, residual);
   std::vector<double> integrals;
   integrals.reserve(quads.size());
   for (const Quad& quad : quads)
-    integrals.push_back(magnitude * UpperQuadIntegral(control.m, quad) + masked(quad));
+    integrals.push_back(magnitude * UpperQuadIntegral(control, quad) + masked(quad));
   return integrals;
 }
 
@@ -309,16 +350,12 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
   }
   const std::vector<double> wanted = LobeIntegrals(view, local, MaskNodes(view, settings.nodes), control);
   std::vector<Quad> white;
-  std::vector<double> cosine, weight;
-  double total_world = 0.0, total_lobe = 0.0;
+  std::vector<double> cosine;
   for (std::size_t i = 0; i < local.size(); ++i) {
     white.push_back(Transform(whitening, settings.above_horizon ? ClipAbove(local[i]) : local[i]));
-    (i < quads.world.size() ? total_world : total_lobe) += wanted[i] * wanted[i];
     cosine.push_back(settings.with_cosine ? UpperQuadIntegral(Terms(1.0, 0.0, 0.0, 1.0), local[i]) : 0.0);
   }
-  for (std::size_t i = 0; i < local.size(); ++i)
-    weight.push_back(i < quads.world.size() ? (1.0 - settings.lobe_share) / total_world
-                                            : settings.lobe_share / total_lobe);
+  const std::vector<double> weight = LossWeights(wanted, quads.world.size(), settings.lobe_share);
   const auto expand = [&](const Unknowns& p) {
     Expansion sum;
     const Terms terms = p.head<4>();
@@ -352,6 +389,144 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
   }
   Minimise(expand, &best, active, 30, 1e-6);
   return MakeCell(whitening, moments, best);
+}
+
+namespace {
+
+// The whitenings in which two lobes are fitted. A sharp ρ's second lobe may be wide or as narrow as the first: it is measured between.
+struct PairFrames {
+  Whitening first, second;
+};
+
+PairFrames FramesOf(const View& view) {
+  PairFrames frames{MirrorWhitening(view), MirrorWhitening(view)};
+  frames.second.width = std::sqrt(frames.first.width);
+  frames.second.depth = std::sqrt(frames.first.depth);
+  return frames;
+}
+
+// At roughness 1 and normal incidence, where the whitenings are the identity.
+const PairUnknowns kPairStart{{1.0, 0.0, 0.0, 0.7, 1.0, 0.0, 0.0, 1.5, 0.25}};
+
+// A loss of two lobes about a point: what both stages share. Their sum's magnitude is albedo/(1 − b), b its share below the horizon.
+class PairLoss {
+ public:
+  PairLoss(const PairFrames& frames, const PairUnknowns& p, double albedo)
+      : share_(p[8]), first_(BelowHorizon(frames.first, p.head<4>())), second_(BelowHorizon(frames.second, p.segment<4>(4))) {
+    below_ = (1.0 - share_) * first_.share + share_ * second_.share;
+    below_gradient_ << (1.0 - share_) * first_.gradient, share_ * second_.gradient, second_.share - first_.share;
+    magnitude_ = albedo / (1.0 - below_);
+  }
+
+  // What each lobe has of a direction or a quad, with its derivatives, against ρ's.
+  void Add(double first, const Terms& by_first, double second, const Terms& by_second, double wanted, double weight) {
+    const double both = (1.0 - share_) * first + share_ * second;
+    PairUnknowns jacobian;
+    jacobian << (1.0 - share_) * by_first, share_ * by_second, second - first;
+    jacobian = magnitude_ * (jacobian + both / (1.0 - below_) * below_gradient_);
+    sum.Add(magnitude_ * both - wanted, jacobian, weight);
+  }
+
+  void AddPenalties(const PairUnknowns& p, double alpha, const std::vector<Cell>& neighbours, const PolygonFit& settings) {
+    sum.Add(below_, below_gradient_, settings.leak_penalty);
+    sum.Add(p[8] - kPairStart[8], PairUnknowns::Unit(8), settings.share_penalty);
+    const double penalty = settings.step_penalty * (1.0 + 0.02 / alpha);
+    for (const Cell& neighbour : neighbours)
+      for (int i = 0; i < 9; ++i) sum.Add(p[i] - neighbour.fitted[i], PairUnknowns::Unit(i), penalty);
+  }
+
+  ExpansionOf<9> sum;
+
+ private:
+  double share_;
+  Leak first_, second_;
+  double below_, magnitude_;
+  PairUnknowns below_gradient_;
+};
+
+Cell MakePairCell(const PairFrames& frames, const LobeMoments& moments, const PairUnknowns& p) {
+  Cell cell;
+  cell.m = frames.first.ToLocal(p.head<4>());
+  cell.second = frames.second.ToLocal(p.segment<4>(4));
+  cell.share = p[8];
+  cell.albedo = moments.albedo;
+  cell.schlick = moments.schlick;
+  cell.leak = (1.0 - p[8]) * BelowHorizon(frames.first, p.head<4>()).share + p[8] * BelowHorizon(frames.second, p.segment<4>(4)).share;
+  cell.fitted = p;
+  return cell;
+}
+
+// Divides ∫ρ(1 − v·h)⁵ among the lobes as their own integrals are.
+void DivideSchlick(const Nodes& upper, Cell* cell) {
+  double first = 0.0, second = 0.0;
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    const glm::dvec3 direction(upper.x[i], upper.y[i], upper.z[i]);
+    const double weight = upper.weight[i] * upper.schlick[i];
+    first += weight * (1.0 - cell->share) * LtcDensity(cell->m, direction, 1.0, nullptr);
+    second += weight * cell->share * LtcDensity(cell->second, direction, 1.0, nullptr);
+  }
+  cell->second_schlick = cell->schlick * second / (first + second);
+}
+
+}  // namespace
+
+Cell FitPairCell(const View& view, const LossQuads& quads, const PolygonFit& settings, bool isotropic, const std::vector<Cell>& neighbours) {
+  const Nodes upper = UpperNodes(view, settings.nodes, settings.nodes);
+  const Nodes dense = UpperNodes(view, kAlbedoNodes, kAlbedoNodes);
+  const LobeMoments moments = Moments(dense);
+  const PairFrames frames = FramesOf(view);
+  const WhiteNodes white_first = Whiten(frames.first, upper), white_second = Whiten(frames.second, upper);
+  double total = 0.0;
+  for (std::size_t i = 0; i < upper.size(); ++i) total += upper.weight[i] * upper.density[i] * upper.density[i];
+  const auto expand_density = [&](const PairUnknowns& p) {
+    PairLoss loss(frames, p, moments.albedo);
+    Terms by_first, by_second;
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+      const double first = LtcDensity(p.head<4>(), white_first.direction[i], white_first.scale, &by_first);
+      const double second = LtcDensity(p.segment<4>(4), white_second.direction[i], white_second.scale, &by_second);
+      loss.Add(first, by_first, second, by_second, upper.density[i], upper.weight[i] / total);
+    }
+    loss.AddPenalties(p, view.alpha, neighbours, settings);
+    return loss.sum;
+  };
+  std::array<bool, 9> active;
+  active.fill(!isotropic);
+  active[3] = active[7] = active[8] = true;
+  PairUnknowns best = neighbours.empty() ? kPairStart : neighbours[0].fitted;
+  Minimise(expand_density, &best, active, 30, 1e-6);
+  const Cell control = MakePairCell(frames, moments, best);
+
+  std::vector<Quad> local = quads.world;
+  for (const Quad& quad : quads.lobe) {
+    std::array<glm::dvec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = frames.first.Undo(quad.corner[i]);
+    local.push_back(MakeQuad(corners));
+  }
+  const std::vector<double> wanted = LobeIntegrals(view, local, MaskNodes(view, settings.nodes), control);
+  const std::vector<double> weight = LossWeights(wanted, quads.world.size(), settings.lobe_share);
+  std::vector<Quad> first_quads, second_quads;
+  for (const Quad& quad : local) {
+    first_quads.push_back(Transform(frames.first, quad));
+    second_quads.push_back(Transform(frames.second, quad));
+  }
+  const auto expand = [&](const PairUnknowns& p) {
+    PairLoss loss(frames, p, moments.albedo);
+    Terms by_first, by_second;
+    for (std::size_t i = 0; i < local.size(); ++i) {
+      const double first = QuadIntegral(p.head<4>(), first_quads[i], &by_first);
+      const double second = QuadIntegral(p.segment<4>(4), second_quads[i], &by_second);
+      loss.Add(first, by_first, second, by_second, wanted[i], weight[i]);
+    }
+    loss.AddPenalties(p, view.alpha, neighbours, settings);
+    return loss.sum;
+  };
+  if (!isotropic)
+    for (const Cell& neighbour : neighbours)
+      if (expand(neighbour.fitted).loss < expand(best).loss) best = neighbour.fitted;
+  Minimise(expand, &best, active, 60, 1e-6);
+  Cell cell = MakePairCell(frames, moments, best);
+  DivideSchlick(dense, &cell);
+  return cell;
 }
 
 PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, const AverageFrameTerms& start) {

@@ -14,8 +14,12 @@ struct Cell {
   Terms m{1.0, 0.0, 0.0, 1.0};  // M⁻¹ in the local frame, middle element 1
   double albedo = 0.0;          // ∫ρ
   double schlick = 0.0;         // ∫ρ (1 − v·h)⁵
-  double leak = 0.0;            // the lobe's share below the horizon
+  double leak = 0.0;            // the lobe's share below the horizon, of two lobes that of their sum
   double cosine = 0.0;          // integral of the cosine lobe that stands beside the LTC
+  // Of a fit of two lobes: the second's M⁻¹, its shares of their sum and of `schlick`, and what the fit's unknowns were.
+  Terms second{1.0, 0.0, 0.0, 1.0};
+  double share = 0.0, second_schlick = 0.0;
+  Eigen::Matrix<double, 9, 1> fitted = Eigen::Matrix<double, 9, 1>::Zero();
 };
 
 // Whitening about the mirror direction: widths of the GGX lobe in the plane of incidence (2α) and across it
@@ -42,6 +46,10 @@ struct PolygonFit {
   bool with_cosine = false;
   bool above_horizon = false;    // the shader clips at the surface's horizon too
   double cosine_penalty = 5e-3;  // × w²
+  // Of two lobes: how fast they may change from cell to cell, and what the second's share s tends to where it is of no use. The
+  // sharper ρ is, the less a second lobe gains, and the slower it may change.
+  double step_penalty = 1e-4;    // × squared distance to each neighbour's unknowns × (1 + 0.02/α)
+  double share_penalty = 1e-5;   // × (s − ¼)²
 };
 
 // Findings § 1, points 1 and 2: least squares on the density, then on the integrals over `quads`. `previous`
@@ -49,6 +57,11 @@ struct PolygonFit {
 // normal incidence.
 Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& settings,
                     const Cell* previous);
+
+// The same with two lobes. They start at the first neighbour's and are held near those of all, the next rougher and the one of the next
+// smaller angle, since the loss alone leaves them free: a sharp ρ is one lobe. Without a neighbour ρ is that of roughness 1 at normal
+// incidence; where `isotropic` the lobes are.
+Cell FitPairCell(const View& view, const LossQuads& quads, const PolygonFit& settings, bool isotropic, const std::vector<Cell>& neighbours);
 
 // ∫ρ over each quad (in the local frame), by `nodes`² nodes per side of the plane of incidence: the closed
 // form of a control lobe, and a mask over the nodes for what that misses. Exact for any control in the limit

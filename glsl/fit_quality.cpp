@@ -36,12 +36,12 @@ void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int n
   const std::vector<double> wanted = fit::LobeIntegrals(view, quads, nodes, Control(view));
   const LtcLookup look = Look(tables, point->roughness, view.cosine);
   const fit::Terms m(look.m.x, look.m.y, look.m.z, look.m.w);
-  const fit::Terms cosine_lobe(1.0, 0.0, 0.0, 1.0);
+  const fit::Terms second(look.second.x, look.second.y, look.second.z, look.second.w);
   double squares = 0.0, difference = 0.0, total_squares = 0.0, total = 0.0;
   for (std::size_t i = 0; i < quads.size(); ++i) {
     double value = tables.kind == FitKind::kHorizon ? fit::UpperQuadIntegral(m, quads[i])
                                                     : fit::QuadIntegral(m, quads[i]);
-    if (look.terms.z != 0.0) value += look.terms.z * fit::UpperQuadIntegral(cosine_lobe, quads[i]);
+    if (look.terms.z != 0.0) value += look.terms.z * fit::QuadIntegral(second, quads[i]);
     value *= look.terms.x;
     squares += (value - wanted[i]) * (value - wanted[i]);
     difference += value - wanted[i];
@@ -52,9 +52,10 @@ void Measure(const LtcTables& tables, const std::vector<fit::Quad>& quads, int n
   point->bias = difference / total;
 }
 
-// The LTC's share below the surface's horizon.
-double ShareBelow(const glm::dvec4& m) {
-  return 0.5 * (1.0 - m.x / std::hypot(m.x, m.y));
+// The LTC's share below the surface's horizon, of two lobes their sum's; a cosine lobe has none there.
+double ShareBelow(FitKind kind, const LtcLookup& look) {
+  const auto below = [](const glm::dvec4& m) { return 0.5 * (1.0 - m.x / std::hypot(m.x, m.y)); };
+  return kind == FitKind::kTwo ? (below(look.m) + look.terms.z * below(look.second)) / (1.0 + look.terms.z) : below(look.m);
 }
 
 std::array<double, 3> MeasureCell(const LtcTables& tables, const std::vector<fit::Quad>& quads, double roughness, double degrees,
@@ -64,14 +65,16 @@ std::array<double, 3> MeasureCell(const LtcTables& tables, const std::vector<fit
   const fit::View view = fit::MakeView(tables.brdf, roughness, std::cos(glm::radians(degrees)));
   const LtcLookup look = Look(tables, roughness, view.cosine);
   const fit::Terms m(look.m.x, look.m.y, look.m.z, look.m.w);
+  const fit::Terms second(look.second.x, look.second.y, look.second.z, look.second.w);
   const fit::Nodes nodes = fit::UpperNodes(view, node_count, node_count);
   double difference = 0.0, total = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double lobe = fit::LtcDensity(m, {nodes.x[i], nodes.y[i], nodes.z[i]}, 1.0, nullptr) + look.terms.z * nodes.z[i] / glm::pi<double>();
+    const glm::dvec3 direction(nodes.x[i], nodes.y[i], nodes.z[i]);
+    const double lobe = fit::LtcDensity(m, direction, 1.0, nullptr) + look.terms.z * fit::LtcDensity(second, direction, 1.0, nullptr);
     difference += nodes.weight[i] * std::abs(nodes.density[i] - look.terms.x * lobe);
     total += nodes.weight[i] * nodes.density[i];
   }
-  return {point.relative_rmse, difference / total, ShareBelow(look.m)};
+  return {point.relative_rmse, difference / total, ShareBelow(tables.kind, look)};
 }
 
 }  // namespace
@@ -159,7 +162,7 @@ FitQuality MeasureFit(const LtcTables& tables, const MeasureOptions& options,
 
   for (int row = 0; row < tables.size; ++row) {
     for (int column = 0; column < tables.size; ++column) {
-      const double leak = ShareBelow(NodeMatrix(tables, row, column));
+      const double leak = ShareBelow(tables.kind, NodeLookup(tables, row, column));
       quality.leak_mean += leak;
       quality.leak_max = std::max(quality.leak_max, leak);
     }

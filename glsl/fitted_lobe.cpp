@@ -1,7 +1,6 @@
 #include "glsl/fitted_lobe.h"
 
 #include <algorithm>
-#include <glm/gtc/constants.hpp>
 #include <vector>
 
 #include "glsl/fit.h"
@@ -12,8 +11,8 @@
 namespace arealab {
 
 double FittedLobe::Density(const glm::dvec3& direction) const {
-  const double plain = std::max(direction.z, 0.0) / glm::pi<double>();
-  return magnitude * (fit::LtcDensity({m.x, m.y, m.z, m.w}, direction, 1.0, nullptr) + cosine * plain);
+  const auto density = [&](const glm::dvec4& n) { return fit::LtcDensity({n.x, n.y, n.z, n.w}, direction, 1.0, nullptr); };
+  return magnitude * (density(m) + other * density(second));
 }
 
 std::optional<FittedLobe> FindFittedLobe(const ShaderLibrary& library, const Variant& variant, Brdf brdf, double roughness,
@@ -33,7 +32,7 @@ std::optional<FittedLobe> FindFittedLobe(const ShaderLibrary& library, const Var
       TableTexels texels = decoded(matrix);
       const LtcTables tables{brdf, kind, storage, texels.size.x, std::move(texels.texels), decoded(TermsFile(brdf, kind, storage.axis)).texels};
       const LtcLookup look = Look(tables, roughness, n_dot_v);
-      return FittedLobe{look.m, look.terms.x, look.terms.z};
+      return FittedLobe{look.m, look.terms.x, look.terms.z, look.second};
     }
   }
   return std::nullopt;

@@ -13,7 +13,8 @@ namespace arealab {
 struct FittedLobe {
   glm::dvec4 m{1.0, 0.0, 0.0, 1.0};  // M⁻¹, in the order of glsl/fit.h
   double magnitude = 1.0;            // with Fresnel 1
-  double cosine = 0.0;               // weight of the plain cosine lobe beside the LTC
+  double other = 0.0;                // weight of a lobe beside it
+  glm::dvec4 second{1.0, 0.0, 0.0, 1.0};  // that lobe's M⁻¹; the plain cosine's is the identity
 
   // 1/sr, with Fresnel 1, also below the surface's horizon. `direction` is unit, in the frame normal = +z, viewer = (sin θ, 0, cos θ).
   double Density(const glm::dvec3& direction) const;

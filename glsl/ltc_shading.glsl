@@ -1,4 +1,4 @@
-// What the LTC techniques share once a rectangle's form factors are known. After ltc_tables.glsl and the options "lobes",
+// What the LTC techniques share once a rectangle's form factors are known. After ltc_tables.glsl and the options
 // "fresnel" and "disk".
 
 #if EFFECT_DISK || EFFECT_SPHERE

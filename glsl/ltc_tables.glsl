@@ -1,5 +1,6 @@
-// The look-up of a lobe, as the options "fit", "norm", "axis" and "frame" stored it: glsl/fit.h.
+// The look-up of a lobe, as the options "lobes", "fit", "norm", "axis" and "frame" stored it: glsl/fit.h.
 #include "ltc.glsl"
+#include "lobes"
 #include "fit"
 #include "norm"
 #include "axis"
@@ -10,11 +11,28 @@ struct LtcCell {
   vec4 terms;  // magnitude, Schlick's term, cosine weight
 };
 
+vec2 LtcCoordinates(float roughness, ShadingFrame frame) {
+  return TableCoordinates(roughness, LtcViewPosition(frame.n_dot_v, frame.sine));
+}
+
+vec4 LookUpMatrix(vec2 uv, vec4 terms, ShadingFrame frame) {
+  return LtcUnturned(LtcNormalised(SampleTable(table_ltc_matrix, uv), terms), frame.n_dot_v, frame.sine);
+}
+
 LtcCell LookUpLtc(float roughness, ShadingFrame frame) {
-  vec2 uv = TableCoordinates(roughness, LtcViewPosition(frame.n_dot_v, frame.sine));
+  vec2 uv = LtcCoordinates(roughness, frame);
   LtcCell cell;
   cell.terms = SampleTable(table_ltc_terms, uv);
-  vec4 stored = LtcNormalised(SampleTable(table_ltc_matrix, uv), cell.terms);
-  cell.m = LtcUnturned(stored, frame.n_dot_v, frame.sine);
+  cell.m = LookUpMatrix(FirstLobe(uv), cell.terms, frame);
   return cell;
 }
+
+#if LOBES_TWO
+// The second lobe, as one by itself.
+LtcCell LookUpSecond(float roughness, ShadingFrame frame, LtcCell first) {
+  LtcCell cell;
+  cell.terms = vec4(first.terms.x * first.terms.z, first.terms.w, 0.0, 0.0);
+  cell.m = LookUpMatrix(SecondLobe(LtcCoordinates(roughness, frame)), cell.terms, frame);
+  return cell;
+}
+#endif

@@ -1262,7 +1262,7 @@ const TERMS = [
 
 // How far the built-in tables' lobes are from the BRDFs', over roughness and view angle.
 const FIT_METRICS = [["polygon", "polygons"], ["lobe", "lobe"], ["below", "below horizon"]];
-const FIT_KINDS = [["polygon", "ours: fitted on polygons (fit=polygon)"], ["l3", "the published kind: |difference|³ of the density (fit=l3)"], ["cosine", "ours, beside a share of the cosine lobe (lobes=cosine)"], ["horizon", "ours, for a second clip at the surface's horizon (horizon=true)"]];
+const FIT_KINDS = [["polygon", "ours: fitted on polygons (fit=polygon)"], ["l3", "the published kind: |difference|³ of the density (fit=l3)"], ["cosine", "ours, beside a share of the cosine lobe (lobes=cosine)"], ["two", "ours, two lobes (lobes=two)"], ["horizon", "ours, for a second clip at the surface's horizon (horizon=true)"]];
 const FIT_NOTES = {
   polygon: (map) => `Relative RMSE of a polygon light's specular integral, ${map.rectangles} rectangles (seed ${map.seed}): centres at distance 1, uniform over the upper hemisphere, turned at random, half sides log-uniform from 0.1 to 2, clipped at the horizon.`,
   lobe: () => "Relative L1 distance of the lobe, above the surface's horizon: the integral of |BRDF × cosine − fitted lobe| over that of BRDF × cosine, Fresnel 1, every direction weighted alike.",

@@ -53,6 +53,7 @@ summary = "Lobes of the fit"
 choices = [
   ["one", "one transformed cosine"],
   ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", brdf = "ggx" }],
+  ["two", "two with matrices of their own: half the error of the fit, half as many cycles again", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -137,7 +138,6 @@ why = "a proxy sphere in place of each half, where the horizon crosses it"
 ---*/
 #include "brdf.glsl"
 #include "ltc_tables.glsl"
-#include "lobes"
 #include "fresnel"
 #include "edge"
 #include "sphere"
@@ -149,10 +149,8 @@ why = "a proxy sphere in place of each half, where the horizon crosses it"
 #include "polygon_light.glsl"
 #endif
 
-Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
-  ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
-  LtcCell cell = LookUpLtc(surface.roughness, frame);
-
+// Both lobes with one transformed cosine for the specular.
+Radiance ShadeLobe(Surface surface, Light light, ShadingFrame frame, LtcCell cell) {
   float form_factor;
   vec3 transformed;
 #if EFFECT_TEXTURED
@@ -198,6 +196,16 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   vec3 vector = vec3(0.0);
 #endif
   radiance = ShowTexture(radiance, light, view, cell.m, vector, whole_transformed);
+#endif
+  return radiance;
+}
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
+  LtcCell cell = LookUpLtc(surface.roughness, frame);
+  Radiance radiance = ShadeLobe(surface, light, frame, cell);
+#if LOBES_TWO
+  radiance.specular += ShadeLobe(surface, light, frame, LookUpSecond(surface.roughness, frame, cell)).specular;
 #endif
   return radiance;
 }

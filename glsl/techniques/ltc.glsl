@@ -62,6 +62,7 @@ summary = "Lobes of the fit"
 choices = [
   ["one", "one transformed cosine"],
   ["cosine", "and a signed share of the plain cosine, the diffuse integral reused", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", horizon = "lobe", brdf = "ggx" }],
+  ["two", "two with matrices of their own: half the error of the fit, half as many cycles again", { fit = "polygon", frame = "mirror", norm = "middle", axis = "sqrt", horizon = "lobe", brdf = "ggx" }],
 ]
 
 [[option]]
@@ -212,7 +213,6 @@ why = "each half has its own direction for the Fresnel term"
 ---*/
 #include "brdf.glsl"
 #include "ltc_tables.glsl"
-#include "lobes"
 #include "fresnel"
 #include "edge"
 #include "clip"
@@ -232,10 +232,8 @@ why = "each half has its own direction for the Fresnel term"
 #include "tube"
 #endif
 
-Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
-  ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
-  LtcCell cell = LookUpLtc(surface.roughness, frame);
-
+// Both lobes with one transformed cosine for the specular.
+Radiance ShadeLobe(Surface surface, Light light, ShadingFrame frame, LtcCell cell) {
   float form_factor;
   vec3 transformed;
 #if EFFECT_TUBE && TUBE_STRIP
@@ -291,6 +289,16 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #else
   radiance = ShowTexture(radiance, light, view, cell.m, vec3(0.0), transformed);
 #endif
+#endif
+  return radiance;
+}
+
+Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
+  ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
+  LtcCell cell = LookUpLtc(surface.roughness, frame);
+  Radiance radiance = ShadeLobe(surface, light, frame, cell);
+#if LOBES_TWO
+  radiance.specular += ShadeLobe(surface, light, frame, LookUpSecond(surface.roughness, frame, cell)).specular;
 #endif
   return radiance;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <random>
 
+#include "glsl/fit.h"
 #include "tests/compare/technique_points.h"
 
 namespace arealab::ltc_technique_test {
@@ -326,6 +327,51 @@ TEST_F(LtcTechnique, DegenerateInputsStayFiniteForEveryOption) {
     ++variants;
   }
   EXPECT_GT(variants, 30);
+}
+
+// Two lobes are what the fit says they are: each lobe's density over the light by mid-points on its area, with Fresnel's term averaged
+// over each lobe.
+TEST_F(LtcTechnique, TwoLobesAreTheQuadratureOfTheirDensities) {
+  const LtcTables tables = ReadLtcTables(AREALAB_SOURCE_DIR "/glsl/tables", Brdf::kGgx, FitKind::kTwo);
+  PointRandom random(41);
+  std::vector<PointCase> cases;
+  while (cases.size() < 60) {
+    PointCase c = RandomPoint(random, LightShape::kRectangle);
+    c.roughness = static_cast<float>(random(0.35, 1.0));
+    c.f0 = 0.25;
+    cases.push_back(c);
+  }
+  const std::vector<Shaded> shaded = Shade("ltc+lobes=two+fresnel=lobe", cases, Precision::kDouble);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const PointCase& c = cases[i];
+    const double cosine = glm::dot(c.normal, c.to_view);
+    const glm::dvec3 tangent = glm::normalize(c.to_view - c.normal * cosine), bitangent = glm::cross(c.normal, tangent);
+    const LtcLookup look = Look(tables, c.roughness, cosine);
+    const auto density = [](const glm::dvec4& m, const glm::dvec3& v) {  // [Heitz et al. 2016, eq. 1]
+      const glm::dvec3 w(m.x * v.x + m.z * v.z, v.y, m.y * v.x + m.w * v.z);
+      return std::max(w.z, 0.0) * (m.x * m.w - m.y * m.z) / (glm::pi<double>() * std::pow(glm::dot(w, w), 2.0));
+    };
+    const auto reflectance = [&](double magnitude, double schlick) { return c.f0 * (magnitude - schlick) + schlick; };
+    constexpr int kSteps = 300;
+    double first = 0.0, second = 0.0;
+    for (int row = 0; row < kSteps; ++row) {
+      for (int column = 0; column < kSteps; ++column) {
+        const glm::dvec2 at = c.half_size * (2.0 * (glm::dvec2(column, row) + 0.5) / double(kSteps) - 1.0);
+        const glm::dvec3 to_light = c.center + at.x * c.axis_x + at.y * c.axis_y - c.position;
+        const double length = glm::length(to_light);
+        const glm::dvec3 v(glm::dot(to_light, tangent), glm::dot(to_light, bitangent), glm::dot(to_light, c.normal));
+        const double solid_angle = -glm::dot(to_light, c.light_normal) / (length * length * length);
+        first += solid_angle * density(look.m, v / length);
+        second += solid_angle * density(look.second, v / length);
+      }
+    }
+    const double area = 4.0 * c.half_size.x * c.half_size.y / (kSteps * kSteps);
+    const double expected = area * (first * reflectance(look.terms.x, look.terms.y) + second * reflectance(look.terms.x * look.terms.z, look.terms.w));
+    EXPECT_NEAR(shaded[i].specular, expected, 1e-4 * (1.0 + expected)) << i;
+    largest = std::max(largest, shaded[i].specular);
+  }
+  EXPECT_GT(largest, 0.01);
 }
 
 }  // namespace

@@ -19,14 +19,15 @@
 namespace arealab::fit_test {
 namespace {
 
-constexpr FitKind kKinds[] = {FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished};
+constexpr FitKind kKinds[] = {FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished, FitKind::kTwo};
 
 const std::filesystem::path kTables = std::filesystem::path(AREALAB_SOURCE_DIR) / "glsl" / "tables";
 
 const LtcTables& Stored(FitKind kind) {
   static const LtcTables tables[] = {
       ReadLtcTables(kTables, Brdf::kGgx, FitKind::kPolygon), ReadLtcTables(kTables, Brdf::kGgx, FitKind::kCosine),
-      ReadLtcTables(kTables, Brdf::kGgx, FitKind::kHorizon), ReadLtcTables(kTables, Brdf::kGgx, FitKind::kPublished)};
+      ReadLtcTables(kTables, Brdf::kGgx, FitKind::kHorizon), ReadLtcTables(kTables, Brdf::kGgx, FitKind::kPublished),
+      ReadLtcTables(kTables, Brdf::kGgx, FitKind::kTwo)};
   return tables[static_cast<std::size_t>(kind)];
 }
 
@@ -34,6 +35,7 @@ const LtcTables& Stored(FitKind kind) {
 // roughness 1, where the two lobes are nearly the same) and 0.023.
 constexpr float kSmoothView[] = {0.06f, 0.3f};
 constexpr float kSmoothRoughness[] = {0.014f, 0.05f};
+constexpr double kTwoSmooth = 0.8, kTwoSmoothMean = 0.014;
 
 std::size_t Texel(int row, int column, int size) {
   return static_cast<std::size_t>(row * size + column);
@@ -86,10 +88,12 @@ double NodeCosine(int row) {
   return 1.0 - std::pow(row / 63.0, 2.0) * (1.0 - std::cos(glm::radians(89.0)));
 }
 
-// The share of a node's lobe below the horizon.
-double Leak(FitKind kind, int row, int column) {
-  const glm::dvec4 m = NodeMatrix(Stored(kind), row, column);
+// The share of a lobe below the horizon.
+double Leak(const glm::dvec4& m) {
   return 0.5 * (1.0 - m.x / std::hypot(m.x, m.y));
+}
+double Leak(FitKind kind, int row, int column) {
+  return Leak(NodeMatrix(Stored(kind), row, column));
 }
 
 TEST(Fit, TermsAreTheLobesAlbedo) {
@@ -108,6 +112,53 @@ TEST(Fit, TermsAreTheLobesAlbedo) {
       }
     }
   }
+}
+
+// A light that covers the sky: each lobe's form factor is what of it is above the horizon.
+TEST(Fit, TermsOfTwoLobesAreTheLobesAlbedo) {
+  for (const int row : {0, 30, 50}) {
+    for (const int column : {32, 48, 63}) {
+      const double roughness = column / 63.0;
+      const glm::dvec2 own = OwnAlbedo(roughness * roughness, NodeCosine(row));
+      const LtcLookup node = NodeLookup(Stored(FitKind::kTwo), row, column);
+      const double first = 1.0 - Leak(node.m), second = 1.0 - Leak(node.second);
+      EXPECT_NEAR(node.terms.x * (first + node.terms.z * second), own.x, 1e-5) << row << " " << column;
+      EXPECT_NEAR(node.terms.y * first + node.terms.w * second, own.y, 1e-5) << row << " " << column;
+      EXPECT_GE(node.terms.y, 0.0);
+      EXPECT_GE(node.terms.w, 0.0);
+    }
+  }
+}
+
+// The second lobe is the lesser, faces as the first does, and does not jump: second differences of neighbours, the second's weighted as
+// it is. Measured 0.007 in the mean square over the table and at most 0.39, in the last rows; a cell that fell into another valley by
+// itself has several.
+TEST(Fit, TwoLobesKeepTheirRoles) {
+  const LtcTables& tables = Stored(FitKind::kTwo);
+  double squares = 0.0, largest = 0.0;
+  const auto note = [&](const LtcLookup& a, const LtcLookup& b, const LtcLookup& c) {
+    const double weight = b.terms.z;  // a second lobe without weight may do as it likes
+    for (int term = 0; term < 4; ++term) {
+      for (const double d : {a.m[term] - 2.0 * b.m[term] + c.m[term], weight * (a.second[term] - 2.0 * b.second[term] + c.second[term])}) {
+        squares += d * d;
+        largest = std::max(largest, std::abs(d));
+      }
+    }
+  };
+  for (int row = 0; row < 64; ++row) {
+    for (int column = 0; column < 64; ++column) {
+      const LtcLookup node = NodeLookup(tables, row, column);
+      EXPECT_GT(node.second.x * node.second.w - node.second.y * node.second.z, 0.0) << row << " " << column;
+      EXPECT_GE(node.terms.z, 0.0);
+      EXPECT_LE(node.terms.z, 1.0 + 1e-6);
+      if (row > 0 && row < 63) note(NodeLookup(tables, row - 1, column), node, NodeLookup(tables, row + 1, column));
+      if (column > 0 && column < 63) note(NodeLookup(tables, row, column - 1), node, NodeLookup(tables, row, column + 1));
+    }
+  }
+  RecordProperty("largest", std::to_string(largest));
+  RecordProperty("rms", std::to_string(std::sqrt(squares / (2 * 62 * 64 * 8))));
+  EXPECT_LT(largest, kTwoSmooth);
+  EXPECT_LT(std::sqrt(squares / (2 * 62 * 64 * 8)), kTwoSmoothMean);
 }
 
 // The published tables carry the error of the authors' 32 × 32 samples: up to 2 % in albedo at 85°, and not
@@ -206,7 +257,7 @@ TEST(Fit, PublishedTablesAreOfThePublishedForm) {
 // The stored files are what the program makes: whole columns, since each cell starts from the one before.
 TEST(Fit, RefittedColumnsAreTheStoredOnes) {
   for (const FitKind kind : kKinds) {
-    const std::vector<int> columns = {2, 21, 44, 63};
+    const std::vector<int> columns = kind == FitKind::kTwo ? std::vector<int>{60, 63} : std::vector<int>{2, 21, 44, 63};  // two lobes: and all between
     const LtcTables again = FitLtcColumns(Brdf::kGgx, kind, {}, columns);
     for (const int column : columns) {
       for (int row = 0; row < 64; ++row) {
@@ -232,7 +283,12 @@ TEST(Fit, QualityIsInItsBand) {
   const FitQuality polygon = MeasureFit(Stored(FitKind::kPolygon), options);
   const FitQuality cosine = MeasureFit(Stored(FitKind::kCosine), options);
   const FitQuality published = MeasureFit(Stored(FitKind::kPublished), options);
+  const FitQuality two = MeasureFit(Stored(FitKind::kTwo), options);
   RecordProperty("polygon", QualityTable(polygon));
+  EXPECT_GT(two.all, 0.007);
+  EXPECT_LT(two.all, 0.0125);
+  for (std::size_t i = 0; i < two.by_roughness.size(); ++i) EXPECT_LT(two.by_roughness[i], (two.roughness[i] < 0.2 ? 1.05 : 0.7) * polygon.by_roughness[i]) << i;
+  EXPECT_LT(two.leak_mean, 0.7 * polygon.leak_mean);  // measured 0.53
   EXPECT_GT(polygon.all, 0.015);
   EXPECT_LT(polygon.all, 0.0275);
   EXPECT_GT(cosine.all, 0.012);
@@ -277,6 +333,7 @@ TEST(Fit, EveryStorageHoldsTheSameLobes) {
           if (storage.axis == LtcAxis::kSqrt) {
             ASSERT_LT(glm::length(m - NodeMatrix(Stored(kind), row, column)), 1e-5 * glm::length(m)) << where;
           }
+          if (kind == FitKind::kTwo) continue;  // it has the second's Schlick term there
           // At this scale the last row is a unit vector.
           const double axis = 1.0 / std::hypot(m.y, m.w);
           ASSERT_NEAR(tables.terms[texel].w / axis, 1.0, 1e-4) << where;
@@ -426,9 +483,9 @@ TEST(Fit, SameBytesOnAnyNumberOfThreads) {
   const auto input = OIIO::ImageInput::open((one.path() / "sphere.exr").string());
   ASSERT_TRUE(input);
   EXPECT_EQ(std::string(input->spec().get_string_attribute("DateTime")), "");
-  // Matrices of polygon 2, cosine 1, horizon 1, l3 1 + 9; terms 1, 1, 1 and 3; the sphere; no temporary file
-  // stays.
-  EXPECT_EQ(files, 2 + 1 + 1 + 10 + 6 + 5 * 6 + 1);
+  // Matrices of polygon 2, cosine 1, horizon 1, l3 1 + 9, two 1; terms 1, 1, 1, 3 and 1; the sphere; no temporary
+  // file stays.
+  EXPECT_EQ(files, 2 + 1 + 1 + 10 + 1 + 7 + 5 * 6 + 1);
 }
 
 TEST(Fit, BadUseIsRefused) {

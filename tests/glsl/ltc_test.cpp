@@ -46,6 +46,9 @@ namespace one {
 namespace cosine {
 #include "glsl/lobes/cosine.glsl"
 }
+namespace two {
+#include "glsl/lobes/two.glsl"
+}
 namespace whole {
 #include "glsl/fresnel/lobe.glsl"
 }
@@ -165,8 +168,9 @@ TEST(Ltc, FresnelTowardsTheLight) {
 
 // As a sampler does it: bilinear, clamped to the edge, texel (i, j)'s centre at (i + ½, j + ½) / size.
 dvec4 Sample(const std::vector<glm::vec4>& texels, int size, dvec2 uv) {
-  const dvec2 p = glm::clamp(uv * double(size) - 0.5, dvec2(0.0), dvec2(size - 1.0));
-  const glm::ivec2 low(p), high = glm::min(low + 1, glm::ivec2(size - 1));
+  const glm::ivec2 sizes(size, static_cast<int>(texels.size()) / size);
+  const dvec2 p = glm::clamp(uv * dvec2(sizes) - 0.5, dvec2(0.0), dvec2(sizes - 1));
+  const glm::ivec2 low(p), high = glm::min(low + 1, sizes - 1);
   const dvec2 f = p - dvec2(low);
   const auto at = [&](int x, int y) { return dvec4(texels[static_cast<std::size_t>(y * size + x)]); };
   return glm::mix(glm::mix(at(low.x, low.y), at(high.x, low.y), f.x),
@@ -180,7 +184,7 @@ TEST(Ltc, TablesAreReadAsTheFitWroteThem) {
   const Normalised norms[] = {dual::middle::LtcNormalised, dual::none::LtcNormalised,
                               dual::last::LtcNormalised};
   const Unturned frames[] = {dual::mirror::LtcUnturned, dual::normal::LtcUnturned};
-  for (const FitKind kind : {FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished}) {
+  for (const FitKind kind : {FitKind::kPolygon, FitKind::kCosine, FitKind::kHorizon, FitKind::kPublished, FitKind::kTwo}) {
     for (const LtcStorage& storage : StoragesOf(Brdf::kGgx, kind)) {
       SCOPED_TRACE(MatrixFile(Brdf::kGgx, kind, storage));
       const Position root =
@@ -197,9 +201,12 @@ TEST(Ltc, TablesAreReadAsTheFitWroteThem) {
         const dvec2 uv =
             dual::TableCoordinates(roughness, positions[static_cast<int>(storage.axis)](cosine, sine));
         const dvec4 terms = Sample(tables.terms, tables.size, uv);
-        const dvec4 stored =
-            norms[static_cast<int>(storage.norm)](Sample(tables.matrix, tables.size, uv), terms);
-        const dvec4 m = frames[static_cast<int>(storage.frame)](stored, cosine, sine);
+        const auto matrix = [&](dvec2 at) {
+          return frames[static_cast<int>(storage.frame)](norms[static_cast<int>(storage.norm)](Sample(tables.matrix, tables.size, at), terms), cosine, sine);
+        };
+        const dvec4 m = matrix(kind == FitKind::kTwo ? dual::two::FirstLobe(uv) : dual::one::FirstLobe(uv));
+        const dvec4 second = kind == FitKind::kTwo ? matrix(dual::two::SecondLobe(uv)) : expected.second;
+        EXPECT_LT(glm::length(second - expected.second), 1e-9 * glm::length(second));
         EXPECT_LT(glm::length(m - expected.m), 1e-9 * glm::length(m)) << roughness << ' ' << cosine;
         EXPECT_LT(glm::length(terms - expected.terms), 1e-9 * (1.0 + glm::length(terms)));
         // Facing is kept, and with it the polygon's order.
