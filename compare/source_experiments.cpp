@@ -80,7 +80,8 @@ FlatLight RandomLight(LightRandom& random, bool disk) {
   light.disk = disk;
   light.half = {random.Uniform(0.2, 1.0), random.Uniform(0.2, 1.0)};
   if (disk) light.half.y = light.half.x;
-  light.point = random.Uniform(1.0, 4.0) * random.Direction();
+  const glm::dvec3 to_point = random.Direction();  // first: compilers order operands as they like
+  light.point = random.Uniform(1.0, 4.0) * to_point;
   light.point.z = std::abs(light.point.z);
   light.normal = random.Direction();
   return light;

@@ -115,7 +115,8 @@ PointCase Ordinary(CaseRandom& random, LightShape shape) {
   SetView(c, random(0.05, 1.0), random);
   c.roughness = random(0.1, 1.0);
   c.f0 = random.Chance(0.5) ? 1.0 : 0.04;
-  SetSize(c, random(0.2, 2.0), random(0.2, 2.0));
+  const double height = random(0.2, 2.0), width = random(0.2, 2.0);  // drawn in an order that every compiler keeps, here and below
+  SetSize(c, width, height);
   GiveCorners(c, random);
   dvec3 to_center = random.Direction();
   if (glm::dot(to_center, c.normal) < 0.0) to_center = -to_center;
@@ -174,7 +175,10 @@ PointCase Touching(CaseRandom& random, LightShape shape) {
   const double cosine = glm::dot(c.normal, c.to_view);
   c.normal = glm::normalize(glm::cross(touched, along));
   if (random.Chance(0.5)) c.normal = -c.normal;
-  if (!random.Chance(0.25)) c.normal = glm::normalize(c.normal + random.Log(1e-9, 1e-7) * random.Direction());
+  if (!random.Chance(0.25)) {
+    const dvec3 aside = random.Direction();
+    c.normal = glm::normalize(c.normal + random.Log(1e-9, 1e-7) * aside);
+  }
   SetView(c, cosine, random);
   return c;
 }
@@ -189,7 +193,8 @@ double Height(double most, const PointCase& c, CaseRandom& random) {
 PointCase OnPlane(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
   const double reach = random.Chance(0.5) ? 0.99 : 4.0;
-  PlacePoint(c, random(-reach, reach), random(-reach, reach), Height(1e-4, c, random));
+  const double height = Height(1e-4, c, random), y = random(-reach, reach), x = random(-reach, reach);
+  PlacePoint(c, x, y, height);
   return c;
 }
 
@@ -348,7 +353,8 @@ PointCase Corners(CaseRandom& random, LightShape shape) {
     const glm::dvec2 place = OnAnySide(c, 0.25, 0.75, random) * (1.0 + random.Signed(1e-7, 1e-2));
     PlacePoint(c, place.x, place.y, random.Log(1e-7, 1e-2) * Length(c));
   } else {
-    PlacePoint(c, random(-0.5, 0.5), 1.0 + random.Signed(1e-7, 1e-2), random.Log(1e-7, 1e-2) * Length(c));
+    const double height = random.Log(1e-7, 1e-2) * Length(c), y = 1.0 + random.Signed(1e-7, 1e-2), x = random(-0.5, 0.5);
+    PlacePoint(c, x, y, height);
   }
   return c;
 }
@@ -445,8 +451,8 @@ PointCase EdgeOn(CaseRandom& random, LightShape shape) {
 PointCase ZeroVector(CaseRandom& random, LightShape shape) {
   PointCase c = Ordinary(random, shape);
   if (random.Chance(0.5) && shape != LightShape::kSphere) {  // in the plane, outside: F is 0
-    PlacePoint(c, random(1.5, 4.0), random(-1.0, 1.0),
-               random.Chance(0.5) ? 0.0 : random.Log(1e-12, 1e-7) * Length(c));
+    const double height = random.Chance(0.5) ? 0.0 : random.Log(1e-12, 1e-7) * Length(c), y = random(-1.0, 1.0), x = random(1.5, 4.0);
+    PlacePoint(c, x, y, height);
     return c;
   }
   const dvec3 to_center = glm::normalize(c.center - c.position);

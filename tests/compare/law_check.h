@@ -142,7 +142,8 @@ class LawCheck {
   static bool MakeMirror(PointCase& c, PointRandom& random) {
     const bool hit = random(0.0, 1.0) < 0.7;
     const double reach = hit ? 0.5 : 2.0;
-    const glm::dvec3 target = c.center + reach * random(-1.0, 1.0) * c.half_size.x * c.axis_x + reach * random(-1.0, 1.0) * c.half_size.y * c.axis_y;
+    const double y = random(-1.0, 1.0), x = random(-1.0, 1.0);
+    const glm::dvec3 target = c.center + reach * x * c.half_size.x * c.axis_x + reach * y * c.half_size.y * c.axis_y;
     const glm::dvec3 to_target = glm::normalize(target - c.position);
     c.normal = glm::normalize(to_target + c.to_view);
     c.roughness = 0.02;

@@ -51,7 +51,8 @@ std::vector<PointCase> RandomCases(int count) {
     c.to_view = random.Direction();
     if (glm::dot(c.normal, c.to_view) < 0.0) c.to_view = -c.to_view;
     c.roughness = random(0.05, 1.0);
-    c.center = c.position + random.Log(0.3, 10.0) * random.Direction();
+    const glm::dvec3 to_center = random.Direction();
+    c.center = c.position + random.Log(0.3, 10.0) * to_center;
     c.light_normal = random.Direction();
     if (glm::dot(c.light_normal, c.position - c.center) < 0.0) c.light_normal = -c.light_normal;
     c.axis_x = glm::normalize(glm::cross(random.Direction(), c.light_normal));

@@ -39,7 +39,8 @@ inline PointCase RandomPoint(PointRandom& random, LightShape shape) {
   c.to_view = random.Direction();
   if (glm::dot(c.normal, c.to_view) < 0.0) c.to_view = -c.to_view;
   c.roughness = random(0.1, 1.0);
-  c.center = random(1.0, 4.0) * random.Direction();
+  const glm::dvec3 to_center = random.Direction();  // each draw in a statement of its own: compilers order operands as they like
+  c.center = random(1.0, 4.0) * to_center;
   c.light_normal = random.Direction();
   if (glm::dot(c.light_normal, c.position - c.center) < 0.0) c.light_normal = -c.light_normal;
   c.axis_x = glm::normalize(glm::cross(random.Direction(), c.light_normal));
