@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -36,8 +37,8 @@ constexpr double kFarShare = 1.0 - 0x1p-17;  // rays end before the light: a wal
 enum Integral : std::size_t { kDiffuse, kSpecular, kGrazing, kIntegrals };
 constexpr std::size_t kSums = 3 * kIntegrals;  // one of each channel
 
-// The plane of the light, the four that join it to the point, and the horizon.
-Shaft ShaftTo(const ShadingPoint& point, const LightDirections& light) {
+// The four planes that join the light to the point, the horizon, and the light's plane unless `through` it.
+Shaft ShaftTo(const ShadingPoint& point, const LightDirections& light, bool through = false) {
   Shaft shaft;
   shaft.apex = point.position;
   const std::array<glm::dvec3, 4> corners = light.Corners();
@@ -49,7 +50,7 @@ Shaft ShaftTo(const ShadingPoint& point, const LightDirections& light) {
     normal /= glm::dot(normal, middle) < 0.0 ? -length : length;
     shaft.Add(normal, 0.0);
   }
-  shaft.Add(light.back_normal(), -light.back_distance());
+  if (!through) shaft.Add(light.back_normal(), -light.back_distance());
   shaft.Add(point.normal, 0.0);
   return shaft;
 }
@@ -60,9 +61,10 @@ class SampledLight {
   // Radiance of the diffuse lobe, and of the specular one with F0 and with 1 − F0: all unshadowed.
   std::array<glm::dvec3, kIntegrals> unshadowed;
 
-  // `textured` is the light where it has a texture, and outlives this.
+  // `textured` is the light where it has a texture, and outlives this. `through`: what lies behind the light hides it too, since
+  // it is the sky there.
   SampledLight(const ShadedPixel& pixel, const glm::dvec3& radiance, const Light* textured, const ColorIntegrals& integrals,
-               const LightDirections& directions, std::uint64_t seed)
+               const LightDirections& directions, std::uint64_t seed, bool through = false)
       : unshadowed{pixel.albedo * radiance * integrals.form_factor,
                    pixel.specular_weight * pixel.f0 * radiance * integrals.specular,
                    pixel.specular_weight * (1.0 - pixel.f0) * radiance * integrals.specular_grazing},
@@ -70,6 +72,7 @@ class SampledLight {
         light_(textured),
         channels_(textured ? 3 : 1),
         directions_(directions),
+        through_(through),
         seed_(seed) {
     std::array<double, kIntegrals> sum;
     for (std::size_t k = 0; k < kIntegrals; ++k) {
@@ -171,7 +174,7 @@ class SampledLight {
     }
     for (std::size_t k = 0; k < kIntegrals * channels_; ++k) w.weight[k] = weight[k / channels_] * texel[static_cast<int>(k % channels_)];
     scratch.weighted.push_back(w);
-    scratch.rays.push_back({glm::vec3(sample.direction), static_cast<float>(sample.distance * kFarShare)});
+    scratch.rays.push_back({glm::vec3(sample.direction), through_ ? std::numeric_limits<float>::infinity() : static_cast<float>(sample.distance * kFarShare)});
   }
 
   void Estimate() {
@@ -205,6 +208,7 @@ class SampledLight {
   const Light* light_;    // where it has a texture; then each channel has sums of its own
   std::size_t channels_;
   LightDirections directions_;
+  bool through_;
   std::uint64_t seed_;
   glm::dvec3 x_, y_, z_, view_;  // the frame of the lobe, and the viewer in it
   double cos_v_ = 0.0;
@@ -282,22 +286,17 @@ struct ShadowBands {
       const Light& light = scene.lights[l];
       const auto directions = LightDirections::From(pixel->point.position, pixel->point.normal, light);
       if (!directions) continue;
-      if (!rays->MayBlock(ShaftTo(pixel->point, *directions))) {
-        others = true;
-        continue;
-      }
-      const ColorIntegrals integrals = integrator.Integrate(pixel->point, l, light_tolerance);
-      if (integrals.form_factor == glm::dvec3(0.0) && integrals.specular == glm::dvec3(0.0)) continue;
       const std::uint64_t seed = Mix(Mix(kSeed, i), l);
-      if (!light.texture) {
-        lights.emplace_back(*pixel, light.radiance - sky, nullptr, integrals, *directions, seed);
-        continue;
+      const bool hidden = rays->MayBlock(ShaftTo(pixel->point, *directions));
+      if (!hidden) others = true;
+      if (hidden) {
+        const ColorIntegrals integrals = integrator.Integrate(pixel->point, l, light_tolerance);
+        if (integrals.form_factor == glm::dvec3(0.0) && integrals.specular == glm::dvec3(0.0)) continue;
+        lights.emplace_back(*pixel, light.radiance, light.texture ? &light : nullptr, integrals, *directions, seed);
       }
-      lights.emplace_back(*pixel, light.radiance, &light, integrals, *directions, seed);
-      if (scene.sky) {
-        const ColorIntegrals even(IntegrateLight(pixel->point, light, light_tolerance));
-        lights.emplace_back(*pixel, -sky, nullptr, even, *directions, seed);
-      }
+      // The light hides the sky behind it, unless something else does already.
+      if (!scene.sky || !rays->MayBlock(ShaftTo(pixel->point, *directions, true))) continue;
+      lights.emplace_back(*pixel, -sky, nullptr, ColorIntegrals(IntegrateLight(pixel->point, light, light_tolerance)), *directions, seed, true);
     }
     if (scene.sky) {
       Shaft above;
@@ -343,9 +342,12 @@ struct ShadowBands {
       specular_left += s * whole[kSpecular] + g * whole[kGrazing];
       specular_lost += (1.0 - s) * whole[kSpecular] + (1.0 - g) * whole[kGrazing];
     }
-    // What is left of these lights is a lower bound where others are free, all there is where none are; before a sky lights may take
+    // What is left of these lights is a lower bound where others are free, all there is where none are; before a sky lights take
     // away, and black is the bound.
-    if (scene.sky && others) diffuse_left = specular_left = glm::dvec3(0.0);
+    if (scene.sky) {
+      diffuse_left = others ? glm::dvec3(0.0) : glm::max(diffuse_left, 0.0);
+      specular_left = others ? glm::dvec3(0.0) : glm::max(specular_left, 0.0);
+    }
     diffuse = glm::vec3(others ? glm::max(glm::dvec3(diffuse) - diffuse_lost, diffuse_left) : diffuse_left);
     specular =
         glm::vec3(others ? glm::max(glm::dvec3(specular) - specular_lost, specular_left) : specular_left);

@@ -199,6 +199,46 @@ TEST(SkyTruth, ShadowedMatchesClosedForms) {
   EXPECT_NEAR(mean, 0.25, 2e-3);
 }
 
+// A light that hangs before that wall hides none of the sky: the wall does so already, and both give what each gives alone.
+TEST(SkyTruth, BehindALightBeforeAWallThereIsNoSkyToHide) {
+  Scene scene = UnderSky(dvec3(1.0));
+  scene.materials[0].specular = 0.0f;
+  Placement wall;
+  wall.rotation = RotationFromDegrees({0.0, 90.0, 0.0});
+  wall.position = {0.0, 0.0, 0.5};
+  scene.meshes = {MakePlane({4.0, 4.0}, {}), MakePlane({1.0, 4000.0}, wall)};
+  Light& light = scene.lights[0];
+  light.shape = LightShape::kRectangle;
+  light.center = {0.05, 0.0, 0.5};
+  light.normal = {1.0, 0.0, 0.0};
+  light.axis_x = {0.0, 1.0, 0.0};
+  light.axis_y = {0.0, 0.0, 1.0};
+  light.half_size = {0.5, 0.3};
+  light.radiance = dvec3(0.5);
+  SurfacePixels pixels;
+  pixels.width = 16;
+  pixels.height = 16;
+  pixels.view_position = {0.0f, 0.0f, 30.0f};
+  for (int i = 0; i < 256; ++i) {
+    pixels.position.emplace_back(static_cast<float>(0.3 * std::pow(1.01, i)), 0.0f, 0.0f, 1.0f);
+    pixels.normal.emplace_back(0.0f, 0.0f, 1.0f, 1.0f);
+    pixels.base_color.emplace_back(1.0f, 1.0f, 1.0f, -1.0f);  // matte
+  }
+  Scene unlit_sky = scene;
+  unlit_sky.sky.reset();
+  const RadianceImage alone = ComputeTruth(unlit_sky, pixels).radiance;
+  const ShadowedTruth both = ComputeShadowedTruth(scene, pixels, ComputeTruth(scene, pixels).radiance, {}, {0.005, {}});
+  double bias = 0.0, least = 1.0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double d = static_cast<double>(pixels.position[i].x), of_light = static_cast<double>(alone.diffuse[i].x);
+    const double expected = 0.5 * (1.0 + d / std::hypot(d, 1.0)) + of_light;
+    bias += (static_cast<double>(both.radiance.diffuse[i].x) - expected) / expected / 256.0;
+    if (i == 0) least = of_light / expected;
+  }
+  EXPECT_GT(least, 0.1);  // so that the sky that it would hide is seen
+  EXPECT_NEAR(bias, 0.0, 1e-3);
+}
+
 // A ball of radius 1 whose centre is 2 over the floor hides the cap of sin r = 1/2 overhead. Its form factor is 1/4, so that 3/4 of the
 // sky's is left. One cap of the same area, √3/2, looks at the ball and lets through √3/2 (2 − √3/2) of it; a blocked cap is right.
 TEST_F(Sky, ABallOverAFloorNeedsTheBlockedCap) {
