@@ -293,12 +293,4 @@ Radiance ShadeLobe(Surface surface, Light light, ShadingFrame frame, LtcCell cel
   return radiance;
 }
 
-Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
-  ShadingFrame frame = MakeShadingFrame(surface.normal, to_view);
-  LtcCell cell = LookUpLtc(surface.roughness, frame);
-  Radiance radiance = ShadeLobe(surface, light, frame, cell);
-#if LOBES_TWO
-  radiance.specular += ShadeLobe(surface, light, frame, LookUpSecond(surface.roughness, frame, cell)).specular;
-#endif
-  return radiance;
-}
+#include "ltc_light.glsl"

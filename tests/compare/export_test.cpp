@@ -73,55 +73,37 @@ double Difference(const std::vector<float>& theirs, const std::vector<glm::vec3>
   return apart / most;
 }
 
-TEST(Export, AStrangerDrawsTheSamePicture) {
+// A built-in scene as a stranger draws it with what the export of each variant writes; `scene` is that scene.
+void ExpectAStrangerDraws(const std::string& name, const Scene& scene, const std::vector<std::string>& variants) {
   const auto context = CreateContext(ContextKind::kOsmesa);
   const ShaderLibrary library;
   const std::vector<Technique> techniques = LoadTechniques(library);
-  for (const std::string name : {"ltc", "hill", "drobot", "ltc@published"}) {
+  for (const std::string& variant_name : variants) {
     const TemporaryFolder folder;
-    ExportTo(folder.path(), "gloss", name);
-    const Variant variant = ParseVariant(techniques, name);
-    const Drawn drawn = DrawOneLight(context->gl(), library, variant, LoadScene(FindScene("gloss")));
+    ExportTo(folder.path(), name, variant_name);
+    const Variant variant = ParseVariant(techniques, variant_name);
+    const Drawn drawn = DrawOneLight(context->gl(), library, variant, scene);
     const stranger::Output theirs = stranger::Draw(context->gl(), folder.path().string(), variant.technique->name, drawn.input);
-    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
-    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;
+    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << variant_name;
+    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << variant_name;
   }
+}
+
+TEST(Export, AStrangerDrawsTheSamePicture) {
+  ExpectAStrangerDraws("gloss", LoadScene(FindScene("gloss")), {"ltc", "hill", "drobot", "ltc@published"});
 }
 
 // What a light shows goes along, prefiltered as each technique wants it.
 TEST(Export, AStrangerDrawsALightsTexture) {
-  const auto context = CreateContext(ContextKind::kOsmesa);
-  const ShaderLibrary library;
-  const std::vector<Technique> techniques = LoadTechniques(library);
-  const Scene scene = LoadScene(FindScene("screen"));
-  for (const std::string name : {"ltc", "ltc+border=no", "drobot", "mayaux"}) {
-    const TemporaryFolder folder;
-    ExportTo(folder.path(), "screen", name);
-    const Variant variant = ParseVariant(techniques, name);
-    const Drawn drawn = DrawOneLight(context->gl(), library, variant, scene);
-    const stranger::Output theirs = stranger::Draw(context->gl(), folder.path().string(), variant.technique->name, drawn.input);
-    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
-    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;
-  }
+  ExpectAStrangerDraws("screen", LoadScene(FindScene("screen")), {"ltc", "ltc+border=no", "drobot", "mayaux"});
 }
 
 // Apertures and the sky are inputs like any other, for techniques that know of them and for those that do not.
 TEST(Export, AStrangerDrawsAperturesAndSky) {
-  const auto context = CreateContext(ContextKind::kOsmesa);
-  const ShaderLibrary library;
-  const std::vector<Technique> techniques = LoadTechniques(library);
   Scene scene = LoadScene(FindScene("hovering"));
   scene.aperture->rays = 64;
   BakeApertures(scene);
-  for (const std::string name : {"ltc", "oat", "oat@published"}) {
-    const TemporaryFolder folder;
-    ExportTo(folder.path(), "hovering", name);
-    const Variant variant = ParseVariant(techniques, name);
-    const Drawn drawn = DrawOneLight(context->gl(), library, variant, scene);
-    const stranger::Output theirs = stranger::Draw(context->gl(), folder.path().string(), variant.technique->name, drawn.input);
-    EXPECT_LT(Difference(theirs.diffuse, drawn.image.diffuse), 1e-5) << name;
-    EXPECT_LT(Difference(theirs.specular, drawn.image.specular), 1e-5) << name;
-  }
+  ExpectAStrangerDraws("hovering", scene, {"ltc", "oat", "oat@published"});
 }
 
 TEST(Export, EveryDefaultVariantIsDecidedAndCompiles) {
