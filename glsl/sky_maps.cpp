@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
-#include <span>
 
 #include "scenes/sky.h"
 
@@ -28,6 +27,27 @@ constexpr int kLobeLayers = 4;      // as in glsl/sky_texture.glsl
 constexpr int kLobeLevels = 6;      // the last holds α = 1
 constexpr int kCosineAround = 128;
 constexpr int kRings = 16, kSpokes = 24;  // of a lobe's directions
+
+// Compiled for wider vectors too.
+#if defined(__x86_64__) && !defined(__clang__)
+#define AREALAB_SKY_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define AREALAB_SKY_CLONES
+#endif
+// Adds to each of `count` texels, four floats, weights × the two texels above and the two below; those of the next are `step` floats on.
+AREALAB_SKY_CLONES void AddTexels(float* to, const float* above, const float* below, const glm::vec4& weights, int count, int step) {
+  const float a = weights.x, b = weights.y, c = weights.z, d = weights.w;
+  if (step == 4) {
+    for (int i = 0; i < 4 * count; ++i) to[i] += a * above[i] + b * above[i + 4] + c * below[i] + d * below[i + 4];
+  } else {
+    for (int i = 0; i < count; ++i, to += 4, above += step, below += step) {
+      for (int k = 0; k < 4; ++k) to[k] += a * above[k] + b * above[k + 4] + c * below[k] + d * below[k + 4];
+    }
+  }
+}
+AREALAB_SKY_CLONES void AddScaled(float* to, const float* from, float weight, int count) {
+  for (int i = 0; i < count; ++i) to[i] += weight * from[i];
+}
 
 // A map of `around` × around/2 texels that goes around, with its margins: rows of 5/4 · around.
 struct SkyMap {
@@ -55,21 +75,30 @@ struct SkyMap {
       }
     }
   }
-  // Adds to each texel of a row of another map, whose first is at `place`, weight × what is there, bilinear.
+  // Adds to each texel of a row of another map, whose first is at `place`, weight × what is there, bilinear. The widths are powers of
+  // two: where that map is `phases` times as wide as this one, texels that many apart lie alike between this one's, and the row has
+  // those of one phase after those of the other (Ordered puts them right).
   void AddRow(const glm::dvec2& place, float weight, std::vector<glm::vec4>& row) const {
     const double py = std::clamp(place.y * Height() - 0.5, 0.0, Height() - 1.0);
     const int y = static_cast<int>(py), below = std::min(y + 1, Height() - 1);
     const auto fy = static_cast<float>(py - y);
-    std::vector<glm::vec4> line(static_cast<std::size_t>(around + 1));  // of this map, at that height, gone around
-    for (int x = 0; x <= around; ++x) line[static_cast<std::size_t>(x)] = weight * glm::mix(At(x, y), At(x, below), fy);
-    const double step = static_cast<double>(around) / static_cast<double>(row.size());
-    double px = place.x * around - 0.5 + around;
-    for (glm::vec4& texel : row) {
-      const double at = px >= 2.0 * around ? px - 2.0 * around : px >= around ? px - around : px;
-      const auto x = static_cast<std::size_t>(at);
-      texel += glm::mix(line[x], line[x + 1], static_cast<float>(at - static_cast<double>(x)));
-      px += step;
+    const int width = static_cast<int>(row.size()), phases = std::max(width / around, 1), stride = std::max(around / width, 1), count = width / phases;
+    for (int phase = 0; phase < phases; ++phase) {
+      const double px = place.x * around - 0.5 + around + static_cast<double>(phase) / phases, left = std::floor(px);
+      const auto fx = static_cast<float>(px - left);
+      const glm::vec4 weights = weight * glm::vec4((1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy);
+      for (int i = 0, x = static_cast<int>(left) % around; i < count;) {  // as far as the map's right end, then from its left
+        const int piece = std::min(count - i, (around - x + stride - 1) / stride);
+        AddTexels(&row[static_cast<std::size_t>(phase * count + i)].x, &At(x, y).x, &At(x, below).x, weights, piece, 4 * stride);
+        i += piece;
+        x += piece * stride - around;
+      }
     }
+  }
+  // Texel x of a row that AddRow has added to.
+  const glm::vec4& Ordered(const std::vector<glm::vec4>& row, int x) const {
+    const int phases = std::max(static_cast<int>(row.size()) / around, 1);
+    return row[static_cast<std::size_t>(x % phases) * (row.size() / static_cast<std::size_t>(phases)) + static_cast<std::size_t>(x / phases)];
   }
 };
 
@@ -79,11 +108,13 @@ std::vector<SkyMap> ImageMaps(const Image& image) {
   const auto around = static_cast<int>(std::clamp(std::bit_ceil(static_cast<unsigned>(image.width)), 2U * kCoarsest, kMostAround));
   SkyMap& first = maps.emplace_back(around);
   const int finer = std::max((image.width + around - 1) / around, 1);  // samples along a side of a texel
+  const bool centres = image.width == finer * around && image.height == finer * first.Height();  // of the image's texels, which they are
   tbb::parallel_for(0, first.Height(), [&](int y) {
     for (int x = 0; x < around; ++x) {
       glm::dvec3 sum(0.0);
       for (int k = 0; k < finer * finer; ++k) {
-        sum += SkyTexel(image, (glm::dvec2(x, y) + (glm::dvec2(k % finer, k / finer) + 0.5) / static_cast<double>(finer)) / glm::dvec2(around, first.Height()));
+        if (centres) sum += glm::dvec3(image.pixels[static_cast<std::size_t>(finer * y + k / finer) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(finer * x + k % finer)]);
+        else sum += SkyTexel(image, (glm::dvec2(x, y) + (glm::dvec2(k % finer, k / finer) + 0.5) / static_cast<double>(finer)) / glm::dvec2(around, first.Height()));
       }
       first.At(x, y) = glm::vec4(glm::vec3(sum / static_cast<double>(finer * finer)), 1.0f);
     }
@@ -148,12 +179,19 @@ SkyMap LobeMap(const std::vector<SkyMap>& image, int around, double alpha) {
     // Along a row the directions' places only move.
     const glm::dvec2 first = map.PoleToPole(0, y);
     const glm::dvec3 axis = SkyDirection(first, 0.0), side = SkyDirection({first.x + 0.25, 0.5}, 0.0), up = glm::cross(side, axis);
-    std::vector<glm::vec4> row(static_cast<std::size_t>(around), glm::vec4(0.0f));
+    std::vector<std::vector<glm::vec4>> rows(image.size());  // by level of the image; empty where none is looked up
     for (const LobeDirection& d : lobe) {
       const glm::dvec2 place = SkyCoordinates(side * d.direction.x + up * d.direction.y + axis * d.direction.z, 0.0);
-      image[d.level].AddRow(place, d.weight, row);
+      rows[d.level].resize(static_cast<std::size_t>(around), glm::vec4(0.0f));
+      image[d.level].AddRow(place, d.weight, rows[d.level]);
     }
-    for (int x = 0; x < around; ++x) map.At(x, y) = glm::vec4(glm::vec3(row[static_cast<std::size_t>(x)]), 1.0f);
+    for (int x = 0; x < around; ++x) {
+      glm::vec4 sum(0.0f);
+      for (std::size_t level = 0; level < image.size(); ++level) {
+        if (!rows[level].empty()) sum += image[level].Ordered(rows[level], x);
+      }
+      map.At(x, y) = glm::vec4(glm::vec3(sum), 1.0f);
+    }
   });
   map.FillMargins();
   return map;
@@ -162,39 +200,33 @@ SkyMap LobeMap(const std::vector<SkyMap>& image, int around, double alpha) {
 SkyMap CosineMap(const std::vector<SkyMap>& image) {
   SkyMap map(kCosineAround);
   const SkyMap& source = *std::ranges::find_if(image, [](const SkyMap& level) { return level.around <= kCosineAround; });
-  struct Piece {
-    glm::vec3 direction;
-    float solid_angle;
-    glm::vec3 radiance;
-  };
-  std::vector<Piece> pieces;
-  for (int y = 0; y < source.Height(); ++y) {
-    for (int x = 0; x < source.around; ++x) {
-      pieces.push_back({glm::vec3(SkyDirection(source.Place(x, y), 0.0)), static_cast<float>(source.SolidAngle(y)), glm::vec3(source.At(x, y))});
-    }
-  }
+  const int phases = map.around / source.around;
   tbb::parallel_for(0, map.Height(), [&](int y) {
-    for (int x = 0; x < map.around; ++x) {
-      const glm::vec3 normal(SkyDirection(map.PoleToPole(x, y), 0.0));
-      glm::vec3 sum(0.0f);
-      float weight = 0.0f;
-      for (const Piece& piece : pieces) {
-        const float w = std::max(glm::dot(normal, piece.direction), 0.0f) * piece.solid_angle;
-        sum += w * piece.radiance;
-        weight += w;
+    // The cosine depends on how far around a texel is from the normal alone.
+    std::vector<glm::vec4> row(static_cast<std::size_t>(map.around), glm::vec4(0.0f));
+    std::vector<float> sums(static_cast<std::size_t>(phases), 0.0f);
+    for (int phase = 0; phase < phases; ++phase) {
+      const glm::dvec3 normal = SkyDirection(map.PoleToPole(phase, y), 0.0);
+      glm::vec4* to = &row[static_cast<std::size_t>(phase * source.around)];
+      for (int j = 0; j < source.Height(); ++j) {
+        for (int turn = 0; turn < source.around; ++turn) {
+          const auto weight = static_cast<float>(std::max(glm::dot(normal, SkyDirection(source.Place(turn, j), 0.0)), 0.0) * source.SolidAngle(j));
+          if (weight == 0.0f) continue;
+          sums[static_cast<std::size_t>(phase)] += weight;
+          const int ahead = source.around - turn;
+          AddScaled(&to[0].x, &source.At(turn, j).x, weight, 4 * ahead);
+          AddScaled(&to[ahead].x, &source.At(0, j).x, weight, 4 * turn);
+        }
       }
-      map.At(x, y) = glm::vec4(sum / weight, 1.0f);
     }
+    for (int x = 0; x < map.around; ++x) map.At(x, y) = glm::vec4(glm::vec3(source.Ordered(row, x)) / sums[static_cast<std::size_t>(x % phases)], 1.0f);
   });
   map.FillMargins();
   return map;
 }
 
-}  // namespace
-
-std::vector<TextureLevels> MakeSkyLevels(const std::string& name, const Image& image) {
-  std::vector<SkyMap> maps = ImageMaps(image);
-  if (name == "sky_image") return {Levels(std::move(maps))};
+std::vector<TextureLevels> SkyLevels(const std::string& name, const std::vector<SkyMap>& maps) {
+  if (name == "sky_image") return {Levels(maps)};
   if (name == "sky_cosine") return {Levels({CosineMap(maps)})};
   std::vector<TextureLevels> layers;
   const double first = 2.0 * kTau / kLobesAround;  // kFirstSkyAlpha of glsl/sky_texture.glsl
@@ -208,6 +240,10 @@ std::vector<TextureLevels> MakeSkyLevels(const std::string& name, const Image& i
   return layers;
 }
 
+}  // namespace
+
+std::vector<TextureLevels> MakeSkyLevels(const std::string& name, const Image& image) { return SkyLevels(name, ImageMaps(image)); }
+
 void SkyMaps::Take(std::shared_ptr<const Image> image) {
   if (image == image_) return;
   image_ = std::move(image);
@@ -216,11 +252,13 @@ void SkyMaps::Take(std::shared_ptr<const Image> image) {
 
 void SkyMaps::Bind(const Program& program) {
   if (!image_) return;
+  std::vector<SkyMap> maps;  // once a form is missing
   for (const SkyForm& form : kSkyForms) {
     if (!program.Reads(form.name)) continue;
     GlObject& texture = forms_[form.name];
     if (texture.id() == 0) {
-      const std::vector<TextureLevels> layers = MakeSkyLevels(form.name, *image_);
+      if (maps.empty()) maps = ImageMaps(*image_);
+      const std::vector<TextureLevels> layers = SkyLevels(form.name, maps);
       texture = MakeTextureArray(gl_, GL_RGBA32F, static_cast<int>(layers[0].levels.size()), {layers[0].size, layers.size()});
       for (std::size_t layer = 0; layer < layers.size(); ++layer) {
         for (std::size_t level = 0; level < layers[layer].levels.size(); ++level) {

@@ -89,6 +89,7 @@ class FolderFiles : public Assimp::DefaultIOSystem {
 
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     if (IsInside(file, root_)) {
+      asked_.insert(file);
       std::ifstream in(file, std::ios::binary);
       if (!in || mode[0] != 'r') return nullptr;
       return new FileBytes(std::string(std::istreambuf_iterator<char>(in), {}));  // the importer deletes it
@@ -100,9 +101,11 @@ class FolderFiles : public Assimp::DefaultIOSystem {
   void Close(Assimp::IOStream* file) override { delete file; }
 
   const std::optional<std::string>& refused() const { return refused_; }
+  const std::set<std::string>& asked() const { return asked_; }  // inside it, there or not
 
  private:
   fs::path root_;
+  std::set<std::string> asked_;
   std::optional<std::string> refused_;  // the first file name that was not opened since it lies outside
 };
 
@@ -208,8 +211,8 @@ void AddNode(MeshFile& file, const aiScene& scene, const aiNode& node, const glm
 // Reads textures of one mesh file, each once per use.
 class Textures {
  public:
-  Textures(const aiScene& scene, fs::path folder, fs::path root)
-      : scene_(scene), folder_(std::move(folder)), root_(std::move(root)) {}
+  Textures(const aiScene& scene, fs::path folder, fs::path root, std::set<fs::path>* files)
+      : scene_(scene), folder_(std::move(folder)), root_(std::move(root)), files_(files) {}
 
   // Null where the material has no such texture.
   std::shared_ptr<const Image> Find(const aiMaterial& material, aiTextureType type, ImageUse use) {
@@ -223,6 +226,7 @@ class Textures {
  private:
   std::shared_ptr<const Image> Load(const std::string& path, ImageUse use) const {
     const aiTexture* embedded = scene_.GetEmbeddedTexture(path.c_str());
+    if (!embedded && files_) files_->insert(folder_ / path);
     if (!embedded) return LoadImage(ResolveInside(folder_, path, root_, "the mesh's folder"), use);
     if (embedded->mHeight != 0)
       throw InputError("an embedded texture is not encoded; expected PNG or JPEG bytes");
@@ -235,6 +239,7 @@ class Textures {
   const aiScene& scene_;
   fs::path folder_;
   fs::path root_;
+  std::set<fs::path>* files_;
   std::map<std::pair<std::string, ImageUse>, std::shared_ptr<const Image>> known_;
 };
 
@@ -289,7 +294,8 @@ std::string Extension(const fs::path& file) {
   return extension;
 }
 
-// The file as assimp reads it, checked, smoothed and in assimp's own form; empty where it has no triangles.
+// The file as assimp reads it, checked, smoothed and in assimp's own form, of no bytes where it has no triangles; before it the files
+// that assimp asked for, each ended by a NUL, and another NUL.
 std::string ReadInChild(const fs::path& file, const fs::path& root) {
   const std::string name = file.filename().string(), extension = Extension(file);
   Assimp::Importer importer;
@@ -343,11 +349,14 @@ std::string ReadInChild(const fs::path& file, const fs::path& root) {
                                          aiProcess_GenSmoothNormals | aiProcess_CalcTangentSpace |
                                          aiProcess_JoinIdenticalVertices);
   }
-  if (!scene || scene->mNumMeshes == 0) return "";
+  std::string asked;
+  for (const std::string& each : files->asked()) asked += each + '\0';
+  asked += '\0';
+  if (!scene || scene->mNumMeshes == 0) return asked;
   Assimp::Exporter exporter;
   const aiExportDataBlob* blob = exporter.ExportToBlob(scene, "assbin");
   if (!blob) throw InputError(fmt::format("'{}' cannot be handed on ({}); expected a valid {} file", name, exporter.GetErrorString(), extension));
-  return {static_cast<const char*>(blob->data), blob->size};
+  return asked.append(static_cast<const char*>(blob->data), blob->size);
 }
 
 }  // namespace
@@ -373,7 +382,8 @@ fs::path ResolveInside(const fs::path& folder, const std::string& path, const fs
   return file;
 }
 
-MeshFile LoadMeshFile(const fs::path& file, const fs::path& root) {
+MeshFile LoadMeshFile(const fs::path& file, const fs::path& root, std::set<fs::path>* files) {
+  if (files) files->insert(file);
   const std::string name = file.filename().string();
   const std::string extension = Extension(file);
   const std::initializer_list<const char*> known = {".gltf", ".glb", ".obj", ".ply", ".stl", ".3ds"};
@@ -386,8 +396,13 @@ MeshFile LoadMeshFile(const fs::path& file, const fs::path& root) {
   // assimp's readers crash on many a damaged file: one that does takes its own process with it.
   const std::string checked = InChild([&] { return ReadInChild(file, root); }, 60, fmt::format("'{}' cannot be read as a mesh", name),
                                       fmt::format("a valid {} file", extension));
+  std::size_t at = 0;
+  for (std::size_t end; (end = checked.find('\0', at)) > at; at = end + 1) {
+    if (files) files->insert(checked.substr(at, end - at));
+  }
+  ++at;
   Assimp::Importer importer;
-  const aiScene* scene = checked.empty() ? nullptr : importer.ReadFileFromMemory(checked.data(), checked.size(), 0, "assbin");
+  const aiScene* scene = at == checked.size() ? nullptr : importer.ReadFileFromMemory(checked.data() + at, checked.size() - at, 0, "assbin");
   MeshFile result;
   result.metal_rough = extension == ".gltf" || extension == ".glb";
   result.has_texture_coordinates = true;
@@ -396,7 +411,7 @@ MeshFile LoadMeshFile(const fs::path& file, const fs::path& root) {
     throw InputError(fmt::format("'{}' has no triangles; expected at least one with an area", name));
   }
   if (result.metal_rough) {
-    Textures textures(*scene, file.parent_path(), root);
+    Textures textures(*scene, file.parent_path(), root, files);
     for (unsigned i = 0; i < scene->mNumMaterials; ++i) {
       result.materials.push_back(MetalRough(*scene->mMaterials[i], textures));
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -19,8 +20,9 @@ struct MeshFile {
 // Reads `file`. It and everything it refers to (buffers, textures, material libraries) must lie inside
 // `root`, links followed. Normals are generated (smooth) where the file has none, tangents from texture
 // coordinates or, without them, in an arbitrary direction. Triangles without area are dropped; those wound
-// against their normals are turned. Throws InputError without a place ("what; expected what").
-MeshFile LoadMeshFile(const std::filesystem::path& file, const std::filesystem::path& root);
+// against their normals are turned. Throws InputError without a place ("what; expected what"). Adds to `files` what is read,
+// also where it throws.
+MeshFile LoadMeshFile(const std::filesystem::path& file, const std::filesystem::path& root, std::set<std::filesystem::path>* files = nullptr);
 
 // The file that `path`, as a scene or a mesh gives it, means: relative to `folder`, inside `root`, links
 // followed. Throws InputError without a place; `owner` is what the paths are relative to in its words ("the

@@ -21,6 +21,7 @@
 #include "scenes/image.h"
 #include "scenes/light_texture.h"
 #include "scenes/mesh_file.h"
+#include "scenes/read.h"
 #include "scenes/scene.h"
 #include "scenes/shapes.h"
 #include "scenes/sky.h"
@@ -253,8 +254,8 @@ std::string Question(std::string line) {
 
 class SceneReader {
  public:
-  explicit SceneReader(const fs::path& file)
-      : file_(file), folder_(file.has_parent_path() ? file.parent_path() : ".") {}
+  SceneReader(const fs::path& file, std::set<fs::path>& files)
+      : file_(file), folder_(file.has_parent_path() ? file.parent_path() : "."), files_(files) {}
 
   Scene Read(const std::string& text) {
     scene_.name = file_.stem().string();
@@ -416,6 +417,7 @@ class SceneReader {
   FileInFolder Resolve(const Fields& fields, const toml::node& node, std::string_view key) const {
     const std::string path = fields.String(node, key, "a path as a string");
     return fields.At(node, [&]() -> FileInFolder {
+      if (!path.starts_with(kPackagePrefix)) files_.insert(folder_ / path);
       if (!path.starts_with(kPackagePrefix))
         return {ResolveInside(folder_, path, folder_, "the scene's folder"), folder_};
       std::error_code error;
@@ -607,7 +609,7 @@ class SceneReader {
   void ReadMesh(const Fields& fields, const Placement& placement) {
     const toml::node& file_node = fields.Require("file", "the path of a mesh");
     const FileInFolder place = Resolve(fields, file_node, "file");
-    MeshFile loaded = fields.At(file_node, [&] { return LoadMeshFile(place.file, place.root); });
+    MeshFile loaded = fields.At(file_node, [&] { return LoadMeshFile(place.file, place.root, &files_); });
     // glTF stands on y by its specification; the other formats leave it open.
     const bool y_up = fields.Word("up", {"y", "z"}, loaded.metal_rough ? "y" : "z") == "y";
     const toml::node* height = fields.Find("height");
@@ -906,6 +908,7 @@ class SceneReader {
 
   const fs::path& file_;
   fs::path folder_;
+  std::set<fs::path>& files_;  // that the scene calls for
   Scene scene_;
   std::set<std::string> material_names_;
   std::set<std::string> light_names_;
@@ -935,7 +938,12 @@ std::string ReadSceneText(const fs::path& file) {
 }
 
 Scene ParseScene(const fs::path& file, const std::string& text) {
-  return SceneReader(file).Read(text);
+  std::set<fs::path> files;
+  return ParseScene(file, text, files);
+}
+
+Scene ParseScene(const fs::path& file, const std::string& text, std::set<fs::path>& files) {
+  return SceneReader(file, files).Read(text);
 }
 
 Scene LoadScene(const fs::path& file) {

@@ -934,6 +934,7 @@ void DrawOverlay(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
     y -= 0.8f * u;
   };
   if (!context.message.empty()) lines(context.message, context.trouble ? IM_COL32(255, 150, 120, 255) : IM_COL32(240, 240, 242, 255));
+  if (!context.reading.empty()) lines("reading " + context.reading, IM_COL32(240, 240, 242, 255));
   lines(context.state.error, IM_COL32(255, 150, 120, 255));
   std::string last;
   for (const ShadedVariant& variant : context.state.variants) {

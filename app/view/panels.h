@@ -26,6 +26,7 @@ struct PanelContext {
   const std::map<std::string, std::vector<float>>& history;  // ns a lit pixel, by variant
   const std::vector<std::string>* ocio_views = nullptr;  // of the user's configuration; null: there is none
   std::string ocio_input = {};                           // the colour space that it takes the picture for
+  std::string reading = {};                              // files that are being read or filtered; empty: none
   int flicker_pane = 0;
   bool over_wipe = false;
 };

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <glm/gtc/constants.hpp>
+#include <map>
 #include <system_error>
 #include <utility>
 
 #include "compare/aperture_cache.h"
 #include "scenes/error.h"
 #include "scenes/light_texture.h"
+#include "scenes/read.h"
 #include "scenes/replace_file.h"
 #include "scenes/sky.h"
 #include "scenes/write.h"
@@ -53,7 +55,7 @@ bool Same(const Camera& a, const Camera& b) {
 }
 
 Session::Session(Opened opened)
-    : scene(std::move(opened.scene)), on_disk_(scene), text_(std::move(opened.text)), file_camera_(scene.camera),
+    : scene(std::move(opened.scene)), files(std::move(opened.files)), on_disk_(scene), text_(std::move(opened.text)), file_camera_(scene.camera),
       committed_(Current()) {}
 
 const Snapshot* Session::SnapshotOf(const ShownVariant& pane) const {
@@ -183,7 +185,7 @@ void Session::Autosave() {
   }
   fs::create_directories(file.parent_path(), error);
   try {
-    ReplaceFile(file, EditedText(text_.empty() ? ReadSceneText(scene.file) : text_, on_disk_, Saved()));
+    ReplaceFile(file, EditedSceneText());
   } catch (const InputError&) {
     // A folder that cannot be written to takes away the safety net, not the work.
   }
@@ -203,19 +205,22 @@ void Session::Restore() {
   Commit();
 }
 
-namespace {
-
-std::shared_ptr<const Image> Loaded(const fs::path& file, std::shared_ptr<const Image> (*load)(const fs::path&)) {
-  try {
-    return load(file);
-  } catch (const InputError& trouble) {
-    throw InputError(fmt::format("{}: {}", file.string(), trouble.what()));
+std::set<fs::path> Session::Files() const {
+  std::set<fs::path> all = files;
+  all.insert(scene.file);
+  const fs::path folder = scene.file.has_parent_path() ? scene.file.parent_path() : fs::path(".");
+  for (const Light& each : scene.lights) {
+    if (each.texture) all.insert(folder / each.texture_path);
   }
+  if (scene.sky && scene.sky->texture) all.insert(folder / scene.sky->texture_path);
+  return all;
 }
 
-}  // namespace
-
-std::string Session::PathFromScene(const fs::path& file) const {
+std::string Session::ImagePath(const std::string& light_name, const fs::path& file) const {
+  const auto shown = std::ranges::find(scene.lights, light_name, &Light::name);
+  if (shown != scene.lights.end() && shown->shape != LightShape::kRectangle) {
+    throw InputError(fmt::format("{}: the light '{}' is a {}; expected a rectangle to show an image", file.string(), shown->name, Name(shown->shape)));
+  }
   std::error_code error;
   const fs::path folder = scene.file.has_parent_path() ? scene.file.parent_path() : fs::path(".");
   const fs::path relative = fs::relative(file, folder, error);
@@ -225,22 +230,28 @@ std::string Session::PathFromScene(const fs::path& file) const {
   return relative.generic_string();
 }
 
-void Session::ShowImage(std::size_t light_index, const fs::path& file) {
-  Light& shown = scene.lights.at(light_index);
-  if (shown.shape != LightShape::kRectangle) {
-    throw InputError(fmt::format("{}: the light '{}' is a {}; expected a rectangle to show an image", file.string(), shown.name, Name(shown.shape)));
+void Session::ShowImage(const std::string& light_name, const std::string& path, std::shared_ptr<const Image> image) {
+  if (light_name.empty()) {
+    if (!scene.sky) scene.sky.emplace(glm::dvec3(1.0));
+    scene.sky->texture = std::move(image);
+    scene.sky->texture_path = path;
+    return;
   }
-  std::string path = PathFromScene(file);
-  shown.texture = Loaded(file, LoadLightTexture);
-  shown.texture_path = std::move(path);
+  const auto shown = std::ranges::find(scene.lights, light_name, &Light::name);
+  if (shown == scene.lights.end() || shown->shape != LightShape::kRectangle) {
+    throw InputError(fmt::format("{}: the light '{}' that it was for is gone; expected one to drop it on", path, light_name));
+  }
+  shown->texture = std::move(image);
+  shown->texture_path = path;
+  light = static_cast<int>(shown - scene.lights.begin());
 }
 
-void Session::FillFrom(const fs::path& file) {
-  std::string path = PathFromScene(file);
-  std::shared_ptr<const Image> texture = Loaded(file, LoadSkyTexture);
-  if (!scene.sky) scene.sky.emplace(glm::dvec3(1.0));
-  scene.sky->texture = std::move(texture);
-  scene.sky->texture_path = std::move(path);
+std::shared_ptr<const Image> LoadShownImage(const fs::path& file, bool sky) {
+  try {
+    return sky ? LoadSkyTexture(file) : LoadLightTexture(file);
+  } catch (const InputError& trouble) {
+    throw InputError(fmt::format("{}: {}", file.string(), trouble.what()));
+  }
 }
 
 int Session::AddLight() {
@@ -260,18 +271,63 @@ void Session::RemoveLight() {
   light = -1;
 }
 
-void Session::Replace(Scene from_disk, bool keep_camera) {
+void Session::Replace(Scene from_disk) {
   const Camera camera = scene.camera;
   scene = std::move(from_disk);
   on_disk_ = scene;
   file_camera_ = scene.camera;
   ++geometry;
-  if (keep_camera) scene.camera = camera;
+  scene.camera = camera;
   light = std::min(light, static_cast<int>(scene.lights.size()) - 1);
   material = std::min(material, static_cast<int>(scene.materials.size()) - 1);
   committed_ = Current();
   undo_.clear();
   redo_.clear();
+}
+
+std::string Session::EditedSceneText() const { return EditedText(text_.empty() ? ReadSceneText(scene.file) : text_, on_disk_, Saved()); }
+
+bool Session::Refresh(const Scene& edited) {
+  const auto same = [](const Material& a, const Material& b) {
+    const auto values = [](const Material& m) {
+      return std::array{m.base_color.x, m.base_color.y, m.base_color.z, m.roughness.x, m.roughness.y, m.metalness, m.specular, m.normal_scale};
+    };
+    return a.name == b.name && std::ranges::equal(values(a), values(b), [](float x, float y) { return std::abs(x - y) <= 1e-6f * std::abs(x); });
+  };
+  if (!std::ranges::equal(edited.materials, scene.materials, same)) return false;
+  std::map<const Image*, std::shared_ptr<const Image>> newer;
+  const auto pair = [&](const std::shared_ptr<const Image>& old, const std::shared_ptr<const Image>& now) { newer[old.get()] = now; };
+  for (const Light& now : edited.lights) {
+    const auto old = std::ranges::find(scene.lights, now.name, &Light::name);
+    if (old != scene.lights.end()) pair(old->texture, now.texture);
+  }
+  for (const Material& now : edited.materials) {
+    const auto old = std::ranges::find(scene.materials, now.name, &Material::name);
+    if (old == scene.materials.end()) continue;
+    pair(old->base_color_texture, now.base_color_texture);
+    pair(old->metallic_roughness_texture, now.metallic_roughness_texture);
+    pair(old->normal_texture, now.normal_texture);
+  }
+  if (scene.sky && edited.sky) pair(scene.sky->texture, edited.sky->texture);
+  newer.erase(nullptr);
+  const auto renew = [&](auto& state) {  // a scene, or the edits of one
+    const auto image = [&](std::shared_ptr<const Image>& one) {
+      if (const auto found = newer.find(one.get()); found != newer.end()) one = found->second;
+    };
+    for (Light& each : state.lights) image(each.texture);
+    for (Material& each : state.materials) {
+      for (auto* texture : {&each.base_color_texture, &each.metallic_roughness_texture, &each.normal_texture}) image(*texture);
+    }
+    if (state.sky) image(state.sky->texture);
+  };
+  renew(scene);
+  renew(on_disk_);
+  renew(committed_);
+  for (std::vector<Edits>* stack : {&undo_, &redo_}) std::ranges::for_each(*stack, renew);
+  scene.meshes = edited.meshes;
+  on_disk_.meshes = edited.meshes;
+  ++geometry;
+  return true;
 }
 
 namespace {
@@ -312,18 +368,23 @@ Opened MeshScene(const fs::path& mesh) {
   const double reach = radius / std::sin(0.5 * scene.camera.vertical_fov);
   const glm::dvec3 target(0.0, 0.0, 0.45);
   const std::string framed = text(target + reach * glm::normalize(eye - target), std::max(6.0, 8.0 * radius));
-  return {ParseScene(file, framed), framed};
+  Opened opened{{}, framed};
+  opened.scene = ParseScene(file, framed, opened.files);
+  return opened;
 }
 
 }  // namespace
 
 Opened OpenScene(const std::string& name_or_path, const fs::path& cache) {
   if (IsMesh(name_or_path) && fs::is_regular_file(name_or_path)) return MeshScene(name_or_path);
-  return {LoadWithApertures(FindScene(name_or_path), cache), ""};
+  Opened opened;
+  opened.scene = LoadWithApertures(FindScene(name_or_path), cache, opened.files);
+  return opened;
 }
 
-Scene LoadWithApertures(const fs::path& file, const fs::path& cache) {
-  Scene scene = LoadScene(file);
+Scene LoadWithApertures(const fs::path& file, const fs::path& cache, std::set<fs::path>& files, const std::string& text) {
+  files.insert(file);
+  Scene scene = ParseScene(file, text.empty() ? ReadSceneText(file) : text, files);
   CachedApertures(scene, cache);
   return scene;
 }

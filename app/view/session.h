@@ -34,10 +34,12 @@ bool Same(const Material& a, const Material& b);
 bool Same(const Edits& a, const Edits& b);
 bool Same(const Camera& a, const Camera& b);
 
-// A scene and, where no file holds it yet, the text that a save begins with.
+// A scene, what it was read from, when that began, and, where no file holds it yet, the text that a save begins with.
 struct Opened {
   Scene scene;
   std::string text;
+  std::set<std::filesystem::path> files{};
+  std::filesystem::file_time_type begun = std::filesystem::file_time_type::clock::now();
 };
 
 // A picture that was kept, to be compared with what comes after it. Panes name one "#1", "#2", …
@@ -53,6 +55,7 @@ class Session {
 
   Scene scene;                 // as it is edited
   std::uint64_t geometry = 0;  // another number: other meshes
+  std::set<std::filesystem::path> files;  // that the scene was read from, or would have been; what edits add is in Files alone
 
   // How it is looked at.
   std::array<ShownVariant, 4> panes;  // A, B and, in a grid, C and D
@@ -108,20 +111,27 @@ class Session {
   bool HasLeftBehind() const;
   void Restore();
 
-  // Makes a light, or the sky, show an image that the scene file can name. Throws InputError.
-  void ShowImage(std::size_t light_index, const std::filesystem::path& file);
-  void FillFrom(const std::filesystem::path& file);
+  // What the scene is read from as it is now edited.
+  std::set<std::filesystem::path> Files() const;
+
+  // As the scene file names an image that a light, by its name, or the sky (no name) is to show. Throws InputError where it may not.
+  std::string ImagePath(const std::string& light, const std::filesystem::path& file) const;
+  void ShowImage(const std::string& light, const std::string& path, std::shared_ptr<const Image> image);
   int AddLight();     // a copy of the selected one, or a first one; its index
   void RemoveLight();  // the selected one, where it is not the last
   // Takes the scene as it is now on disk, keeping how it is looked at; edits since are dropped.
-  void Replace(Scene from_disk, bool keep_camera);
+  void Replace(Scene from_disk);
+  // The scene as a file would hold it now, as text. Throws InputError.
+  std::string EditedSceneText() const;
+  // Takes images and meshes of what was read of that text once they have changed on disk; edits and their undo stay. False, and nothing
+  // done, where the materials, which a mesh file may bring along, are others too.
+  bool Refresh(const Scene& edited);
 
  private:
   Edits Current() const { return {scene.lights, scene.materials, scene.exposure, scene.sky}; }
   void Set(const Edits& edits);
 
   std::filesystem::path AutosaveFile() const;
-  std::string PathFromScene(const std::filesystem::path& file) const;  // as the scene file names it; throws InputError
   Scene Saved() const;  // the scene as a save would write it
 
   Scene on_disk_;
@@ -140,8 +150,11 @@ class Session {
 // cache: the folder of apertures already baked.
 Opened OpenScene(const std::string& name_or_path, const std::filesystem::path& cache);
 
-// A scene file with its apertures, where it asks for them.
-Scene LoadWithApertures(const std::filesystem::path& file, const std::filesystem::path& cache);
+// A scene file, or what stands in `text` for it, with its apertures, where it asks for them. Adds to `files` what it is read from, also where it throws.
+Scene LoadWithApertures(const std::filesystem::path& file, const std::filesystem::path& cache, std::set<std::filesystem::path>& files,
+                        const std::string& text = {});
+// An image for a light or the sky; throws InputError with its name.
+std::shared_ptr<const Image> LoadShownImage(const std::filesystem::path& file, bool sky);
 
 // $XDG_CONFIG_HOME/arealab or ~/.config/arealab; made where it is missing; empty where that fails.
 std::filesystem::path ConfigFolder();

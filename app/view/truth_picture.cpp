@@ -1,6 +1,7 @@
 #include "app/view/truth_picture.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -96,24 +97,38 @@ void TruthPicture::Refine(const std::function<void(double)>& progress) {
   Show();
 }
 
-// What is not known yet has the value of its square of the finest grid that is, else the stand-in's.
+// What is not known yet has the value of a corner of its square of the finest grid that has one, else the stand-in's. A corner of the
+// square, or the stand-in's texel, may lie off the surface, beyond a horizon: then the next one has it.
 void TruthPicture::Show() {
   auto image = std::make_shared<RadianceImage>(truth_);
-  const auto width = static_cast<std::size_t>(truth_.width);
+  const auto width = static_cast<std::size_t>(truth_.width), height = static_cast<std::size_t>(truth_.height);
+  const auto known_near = [&](std::size_t x, std::size_t y) -> std::optional<std::size_t> {
+    for (auto grid = std::rbegin(kGrids); grid != std::rend(kGrids); ++grid) {
+      for (const auto& [right, below] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 0), std::pair(1, 1)}) {
+        const std::size_t cx = (x / *grid + static_cast<std::size_t>(right)) * *grid, cy = (y / *grid + static_cast<std::size_t>(below)) * *grid;
+        if (cx < width && cy < height && is_known_[cy * width + cx]) return cy * width + cx;
+      }
+    }
+    return std::nullopt;
+  };
+  const auto stand_in_at = [&](std::size_t x, std::size_t y) {
+    const int w = stand_in_->width, h = stand_in_->height;
+    const int sx = static_cast<int>(x) * w / truth_.width, sy = static_cast<int>(y) * h / truth_.height;
+    for (const auto& [dx, dy] : {std::pair(0, 0), std::pair(0, 1), std::pair(0, -1), std::pair(1, 0), std::pair(-1, 0)}) {
+      if (sx + dx < 0 || sy + dy < 0 || sx + dx >= w || sy + dy >= h) continue;
+      const auto at = static_cast<std::size_t>((sy + dy) * w + sx + dx);
+      if (stand_in_->Total(at) != glm::vec3(0.0f)) return at;
+    }
+    return static_cast<std::size_t>(sy * w + sx);
+  };
   for (std::size_t i = 0; !complete() && i < truth_.size(); ++i) {
     if (is_known_[i] || !pixels_.IsSurface(i)) continue;
     const std::size_t x = i % width, y = i / width;
-    std::optional<std::size_t> known;  // the last is of the finest grid
-    for (const std::size_t grid : kGrids) {
-      const std::size_t corner = y / grid * grid * width + x / grid * grid;
-      if (is_known_[corner]) known = corner;
-    }
-    if (known) {
+    if (const auto known = known_near(x, y)) {
       image->diffuse[i] = truth_.diffuse[*known];
       image->specular[i] = truth_.specular[*known];
     } else if (stand_in_) {
-      const auto of = [](std::size_t at, int to, int from) { return at * static_cast<std::size_t>(to) / static_cast<std::size_t>(from); };
-      const std::size_t source = of(y, stand_in_->height, truth_.height) * static_cast<std::size_t>(stand_in_->width) + of(x, stand_in_->width, truth_.width);
+      const std::size_t source = stand_in_at(x, y);
       image->diffuse[i] = stand_in_->diffuse[source];
       image->specular[i] = stand_in_->specular[source];
     }

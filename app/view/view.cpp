@@ -18,10 +18,13 @@
 #include <ctime>
 #include <deque>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <glm/gtc/constants.hpp>
+#include <set>
 #include <thread>
 
+#include "app/view/background.h"
 #include "app/view/camera.h"
 #include "app/view/gizmo.h"
 #include "app/view/inspector.h"
@@ -51,6 +54,7 @@ constexpr double kFlickerSeconds = 0.5;
 constexpr std::size_t kHistory = 64;  // measurements that are remembered
 constexpr float kPlainHeight = 1440.0f;  // px: of a monitor up to which type of 16 px is readable
 constexpr int kMinType = 60, kMaxType = 300;
+constexpr auto kFileClockStep = std::chrono::milliseconds(10);  // by which a file's time may lag behind the clock
 constexpr double kClickReach = 4.0;  // px: a press that moves less is a click
 
 // Since the process began, loading of libraries included.
@@ -180,6 +184,12 @@ struct Figures {
 
 enum class Drag { kNone, kPending, kOrbit, kPan, kDolly, kWipe, kControls };
 
+// A file that is read beside the window's own work, and what is done with it then.
+struct Reading {
+  std::string name;
+  std::future<std::function<void()>> done;
+};
+
 // What the window's callbacks saw and no frame has taken yet, in its order.
 struct Event {
   enum Kind { kMove, kButton, kKey, kCharacter, kWheel, kDrop };
@@ -204,10 +214,10 @@ void Noticed() {
 
 class View {
  public:
-  View(const ViewOptions& options, GlfwWindow& window, Worker& worker, Session& session, int type)
+  View(const ViewOptions& options, GlfwWindow& window, Worker& worker, Session& session, fs::file_time_type begun, int type)
       : options_(options), window_(window), worker_(worker), session_(session), display_(window.gl),
         watch_(options.shader_folder), type_(type), chrome_(options.bare ? Chrome::kNone : options.captions ? Chrome::kCaptions : Chrome::kAll) {
-    watch_.SetScene(session.scene.file);
+    watch_.Use(session.Files(), begun);
     Scale();
     ReadOcio();
     if (session.HasLeftBehind()) Say("an earlier session left unsaved edits of this scene: Ctrl + R brings them back");
@@ -237,8 +247,8 @@ class View {
       if (since < kFrameSeconds) std::this_thread::sleep_for(std::chrono::duration<double>(kFrameSeconds - since));
       glfwPollEvents();
     } else {
-      const bool lively = worker_.progress() < 1.0 || session_.layout == Layout::kFlicker || !message_.empty();
-      glfwWaitEventsTimeout(lively ? 0.1 : 0.25);
+      const bool lively = worker_.progress() < 1.0 || session_.layout == Layout::kFlicker || !message_.empty() || !readings_.empty();
+      glfwWaitEventsTimeout(std::max(watch_.Rest(), 1e-3));  // a tenth of a second at most
       // Typing carets blink and tooltips appear without an event.
       if (lively || Seconds(Clock::now() - last_frame_) > 0.5) redraw_ = std::max(redraw_, 1);
     }
@@ -276,15 +286,17 @@ class View {
         redraw_ = std::max(redraw_, 1);
       }
     }
-    if (const Watch::Change change = watch_.Poll(); change.shaders || change.scene) {
-      if (change.shaders) ++library_;
-      if (change.scene) LoadFromDisk();
-      redraw_ = 3;
-    }
-    if (loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    watch_.Use(session_.Files(), begun_);
+    const Watch::Change change = watch_.Poll();
+    if (change.shaders) ++library_;
+    changed_.insert(change.files.begin(), change.files.end());
+    if (!changed_.empty() && readings_.empty()) ReadAgain(std::exchange(changed_, {}));
+    if (change.shaders || !change.files.empty()) redraw_ = 3;
+    while (!readings_.empty() && readings_.front().done.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      Reading reading = std::move(readings_.front());
+      readings_.pop_front();
       try {
-        session_.Replace(loading_.get(), true);
-        Say("scene file read again");
+        reading.done.get()();
       } catch (const std::exception& error) {
         Say(error.what(), true);
       }
@@ -297,12 +309,49 @@ class View {
     if (!message_.empty() && Seconds(Clock::now() - said_) > (trouble_ ? 4.0 : 1.0) * kMessageSeconds) message_.clear();
   }
 
-  void LoadFromDisk() {
-    if (session_.Dirty()) {
-      Say("the scene file has changed on disk; undo your edits or save over it");
-      return;
+  // `read` runs in a thread of its own; what it returns, here. In the order in which they were asked for.
+  void Read(const std::string& name, std::function<std::function<void()>()> read) {
+    begun_ = fs::file_time_type::clock::now() - kFileClockStep;
+    readings_.push_back({name, std::async(std::launch::async, [read = std::move(read)] {
+      Yield(5);
+      return read();
+    })});
+    redraw_ = std::max(redraw_, 1);
+  }
+
+  // What the scene is read from has changed. Where that is images and meshes alone, edits stay.
+  void ReadAgain(const std::set<fs::path>& changed) {
+    const fs::path file = session_.scene.file;
+    const bool other_scene = changed.contains(file);
+    if (other_scene && session_.Dirty()) return Say("the scene file has changed on disk; undo your edits or save over it");
+    std::string text;
+    try {
+      if (!other_scene) text = session_.EditedSceneText();
+    } catch (const std::exception& error) {
+      return Say(error.what(), true);
     }
-    loading_ = std::async(std::launch::async, [file = session_.scene.file, cache = options_.cache] { return LoadWithApertures(file, cache); });
+    const std::string first = (other_scene ? file : *changed.begin()).filename().string();
+    const std::string name = changed.size() > 1 ? fmt::format("{} and {} more", first, changed.size() - 1) : first;
+    Read(name, [this, name, file, text, cache = options_.cache]() -> std::function<void()> {
+      auto files = std::make_shared<std::set<fs::path>>();
+      try {
+        auto scene = std::make_shared<Scene>(LoadWithApertures(file, cache, *files, text));
+        return [this, name, scene, files, edited = !text.empty()] {
+          session_.files = *files;
+          if (!edited || !session_.Refresh(*scene)) {
+            if (session_.Dirty()) throw InputError(fmt::format("the {} changed on disk; undo your edits or save over it", edited ? "materials of a mesh file have" : "scene file has"));
+            session_.Replace(std::move(*scene));
+          }
+          Say(name + " read again");
+        };
+      } catch (const std::exception& error) {
+        // What is wrong may be mended in a file that was not among the scene's before.
+        return [this, files, what = std::string(error.what())] {
+          session_.files.insert(files->begin(), files->end());
+          Say(what, true);
+        };
+      }
+    });
   }
 
   void Frame() {
@@ -325,6 +374,8 @@ class View {
     Replay();
     ImGui::NewFrame();
     PanelContext context{session_, state_, worker_.progress(), unit_, wanted_shot_.empty() ? message_ : "", trouble_, inspection_, inspector_ && inspector_->busy(), cycles_, history_};
+    for (const Reading& reading : readings_) context.reading += (context.reading.empty() ? "" : ", ") + reading.name;
+    if (context.reading.empty()) context.reading = state_.reading;
     context.flicker_pane = FlickerPane();
     if (ocio_) context.ocio_views = &ocio_->views(), context.ocio_input = ocio_->input();
     const bool all = chrome_ == Chrome::kAll;
@@ -435,7 +486,7 @@ class View {
   // What a window list and a script can see: the scene, and whether the picture is whole.
   void Title() {
     const bool looking = (inspector_ && inspector_->busy()) || (counter_ && counter_->busy());
-    const bool whole = state_.full && state_.job == submitted_ && worker_.progress() >= 1.0 && !looking;
+    const bool whole = state_.full && state_.job == submitted_ && worker_.progress() >= 1.0 && !looking && readings_.empty();
     const std::string title = session_.scene.name + (whole ? "" : " …") + " – AreaLab";
     if (title != title_) glfwSetWindowTitle(window_.window, (title_ = title).c_str());
   }
@@ -797,16 +848,16 @@ class View {
     const auto [pane_origin, pane_size] = Pane(at);
     const auto pixel = PixelAt((at - pane_origin) / pane_size);
     const int kind = pixel ? static_cast<int>(std::abs(state_.pixels->position[*pixel].w)) : 1;
+    const int light = kind == 0 ? -1 : kind >= 2 ? kind - 2 : session_.light;
     try {
-      if (kind == 0) {
-        session_.FillFrom(file);
-        return Say(fmt::format("the sky shows {}", file.filename().string()));
-      }
-      const int light = kind >= 2 ? kind - 2 : session_.light;
-      if (light < 0) throw InputError(fmt::format("{}: dropped on no light; expected one under it, or one that is selected", file.string()));
-      session_.ShowImage(static_cast<std::size_t>(light), file);
-      session_.light = light;
-      Say(fmt::format("the light '{}' shows {}", session_.scene.lights[static_cast<std::size_t>(light)].name, file.filename().string()));
+      if (kind != 0 && light < 0) throw InputError(fmt::format("{}: dropped on no light; expected one under it, or one that is selected", file.string()));
+      const std::string name = light < 0 ? "" : session_.scene.lights[static_cast<std::size_t>(light)].name, path = session_.ImagePath(name, file);
+      Read(file.filename().string(), [this, name, path, file]() -> std::function<void()> {
+        return [this, name, path, file, image = LoadShownImage(file, name.empty())] {
+          session_.ShowImage(name, path, image);
+          Say(fmt::format("{} shows {}", name.empty() ? "the sky" : fmt::format("the light '{}'", name), file.filename().string()));
+        };
+      });
     } catch (const std::exception& error) {
       Say(error.what(), true);
     }
@@ -841,7 +892,7 @@ class View {
   void Save() {
     try {
       session_.Save();
-      watch_.SetScene(session_.scene.file);
+      watch_.Wrote(session_.scene.file);
       Say("saved " + session_.scene.file.string());
     } catch (const std::exception& error) {
       Say(error.what(), true);
@@ -939,7 +990,9 @@ class View {
   std::string counted_gpu_;
   std::uint64_t inspected_job_ = 0, counted_job_ = 0, costs_job_ = 0;
   glm::ivec2 inspected_pixel_{-1};
-  std::future<Scene> loading_;
+  std::deque<Reading> readings_;
+  std::set<fs::path> changed_;      // on disk, and not read again yet
+  fs::file_time_type begun_{};      // to be read: the last of the scene's files
 
   ViewJob last_;
   std::uint64_t submitted_ = 0, full_job_ = 0, shown_job_ = 0, library_ = 0;
@@ -1029,6 +1082,7 @@ void RunView(const ViewOptions& given) {
   if (options.scene.empty()) options.scene = remembered.scene;
   if (options.scene.empty()) throw InputError("no scene; expected a built-in name, a scene file or a mesh, since none was open before");
   Opened opened = OpenScene(options.scene, options.cache);
+  const fs::file_time_type begun = opened.begun;
   const GlfwLibrary glfw;
   Worker worker(options.context, options.shader_folder, [] { glfwPostEmptyEvent(); });
   Session session(std::move(opened));
@@ -1043,7 +1097,7 @@ void RunView(const ViewOptions& given) {
   GlfwWindow window(options.size.value_or(remembered.size), session.scene.name + " … – AreaLab");
   WatchInputs(window.window);
   const ImGuiLibrary imgui(window.window);
-  View view(options, window, worker, session, remembered.type);
+  View view(options, window, worker, session, begun, remembered.type);
   view.Run();
   session.Autosave();  // what is unsaved now is offered at the next start
   if (options.frames > 0) return;  // a script's window is no habit of its user

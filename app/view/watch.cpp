@@ -1,5 +1,8 @@
 #include "app/view/watch.h"
 
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -7,20 +10,34 @@ namespace arealab {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr double kLookSeconds = 0.1;
+constexpr double kSettleSeconds = 0.05;  // between the look that sees a change and the one that trusts it
+
+}  // namespace
+
 Watch::Watch(fs::path shader_folder)
     : shader_folder_(std::move(shader_folder)), shaders_(ShaderMarks()), shaders_seen_(shaders_) {}
 
-void Watch::SetScene(const fs::path& file) {
-  scene_file_ = file;
-  scene_ = scene_seen_ = SceneMarks();
+Watch::Mark Watch::MarkOf(const fs::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
+  return {static_cast<std::int64_t>(status.st_ino), status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
 }
 
-void Watch::Mark(const fs::path& file, Marks& marks) {
-  std::error_code error;
-  const auto time = fs::last_write_time(file, error);
-  if (error) return;
-  const auto size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
-  if (!error) marks[file] = {time, size};
+void Watch::Use(const std::set<fs::path>& files, fs::file_time_type since) {
+  std::erase_if(files_, [&](const auto& mark) { return !files.contains(mark.first); });
+  for (const fs::path& file : files) {
+    if (files_.contains(file)) continue;
+    std::error_code error;
+    const auto written = fs::last_write_time(file, error);
+    files_[file] = !error && written > since ? Mark{} : MarkOf(file);
+  }
+}
+
+void Watch::Wrote(const fs::path& file) {
+  if (const auto found = files_.find(file); found != files_.end()) found->second = MarkOf(file);
 }
 
 Watch::Marks Watch::ShaderMarks() const {
@@ -30,42 +47,34 @@ Watch::Marks Watch::ShaderMarks() const {
   for (auto entry = fs::recursive_directory_iterator(shader_folder_, error); !error && entry != fs::recursive_directory_iterator();
        entry.increment(error)) {
     const std::string extension = entry->path().extension().string();
-    if (extension == ".glsl" || extension == ".frag" || extension == ".vert" || extension == ".exr") Mark(entry->path(), marks);
+    if (extension == ".glsl" || extension == ".frag" || extension == ".vert" || extension == ".exr") marks[entry->path()] = MarkOf(entry->path());
   }
   return marks;
 }
 
-Watch::Marks Watch::SceneMarks() const {
-  Marks marks;
-  if (scene_file_.empty()) return marks;
-  Mark(scene_file_, marks);
-  // Its textures and meshes lie in its folder or below; other scenes' files beside it do not count.
-  std::error_code error;
-  const fs::path folder = scene_file_.has_parent_path() ? scene_file_.parent_path() : fs::path(".");
-  for (auto entry = fs::directory_iterator(folder, error); !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    const std::string extension = entry->path().extension().string();
-    for (const char* used : {".png", ".ppm", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".gltf", ".glb", ".obj", ".ply", ".stl", ".3ds"}) {
-      if (extension == used) Mark(entry->path(), marks);
-    }
-  }
-  return marks;
+double Watch::Rest() const {
+  const bool settled = shaders_seen_ == shaders_ && files_seen_ == files_;
+  const std::chrono::duration<double> since = std::chrono::steady_clock::now() - looked_;
+  return std::max((settled ? kLookSeconds : kSettleSeconds) - since.count(), 0.0);
 }
 
 Watch::Change Watch::Poll() {
-  const auto now = std::chrono::steady_clock::now();
-  if (now - looked_ < std::chrono::milliseconds(100)) return {};
-  looked_ = now;
-  const auto look = [](Marks current, Marks& seen, Marks& told, bool new_ones_count) {
-    if (!new_ones_count) std::erase_if(current, [&](const auto& mark) { return !told.contains(mark.first); });
-    const bool rests = current == seen;
+  if (Rest() > 0.0) return {};
+  looked_ = std::chrono::steady_clock::now();
+  const auto rests = [](Marks current, Marks& seen) {
+    const bool same = current == seen;
     seen = std::move(current);
-    if (!rests || seen == told) return false;
-    told = seen;
-    return true;
+    return same;
   };
   Change change;
-  change.shaders = look(ShaderMarks(), shaders_seen_, shaders_, true);
-  change.scene = look(SceneMarks(), scene_seen_, scene_, false);  // what a scene refers to was there when it was read
+  if (rests(ShaderMarks(), shaders_seen_)) change.shaders = std::exchange(shaders_, shaders_seen_) != shaders_seen_;
+  Marks files;
+  for (const auto& [file, mark] : files_) files[file] = MarkOf(file);
+  if (rests(std::move(files), files_seen_)) {
+    for (auto& [file, told] : files_) {
+      if (std::exchange(told, files_seen_.at(file)) != files_seen_.at(file)) change.files.insert(file);
+    }
+  }
   return change;
 }
 

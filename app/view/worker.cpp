@@ -56,6 +56,7 @@ class Worker::Shading {
   void Shade(const ViewJob& job, std::uint64_t number) {
     Prepare(job);
     if (!renderer_) return;
+    TellImages(*job.scene);
     const int divisor = Divisor(job);
     if (divisor > 1) {
       DrawPicture(job, number, (job.size + divisor - 1) / divisor, false, false);
@@ -84,6 +85,19 @@ class Worker::Shading {
     techniques_ = std::move(techniques);
     renderer_ = std::move(renderer);
     worker_.Publish([&](ViewState& state) { state.techniques = techniques_; });
+  }
+
+  // Says which images the next picture is the first to show: filtering them takes a while.
+  void TellImages(const Scene& scene) {
+    std::set<std::shared_ptr<const Image>> images;
+    std::string names;
+    const auto add = [&](const std::shared_ptr<const Image>& image, const std::string& path) {
+      if (image && images.insert(image).second && !images_.contains(image)) names += (names.empty() ? "" : ", ") + path;
+    };
+    if (scene.sky) add(scene.sky->texture, scene.sky->texture_path);
+    for (const Light& light : scene.lights) add(light.texture, light.texture_path);
+    images_ = std::move(images);
+    if (!names.empty()) worker_.Publish([&](ViewState& state) { state.reading = names; });
   }
 
   // By how much a picture is coarsened so that it keeps up with a hand.
@@ -128,7 +142,10 @@ class Worker::Shading {
       worker_.Publish([&](ViewState& state) { state.variants[i] = std::move(shaded); });
     }
     auto kept = std::make_shared<const SurfacePixels>(pixels);
-    worker_.Publish([&](ViewState& state) { state.pixels = std::move(kept); });
+    worker_.Publish([&](ViewState& state) {
+      state.pixels = std::move(kept);
+      state.reading.clear();
+    });
   }
 
   bool Shows(const ViewJob& job, const char* name) const {
@@ -225,6 +242,7 @@ class Worker::Shading {
   std::unique_ptr<Renderer> renderer_;
   Rate scene_rate_;
   std::map<std::string, Rate> rates_;
+  std::set<std::shared_ptr<const Image>> images_;  // of the lights and the sky that were shown last
   TruthPicture truth_;
   std::shared_ptr<const std::vector<glm::vec3>> truth_emission_;
 
@@ -297,7 +315,10 @@ void Worker::Run(std::optional<ContextKind> kind) {
       shading->Shade(job, running_);
     } catch (const Cancelled&) {
     } catch (const std::exception& error) {
-      Publish([&](ViewState& state) { state.error = error.what(); });
+      Publish([&](ViewState& state) {
+        state.error = error.what();
+        state.reading.clear();
+      });
     }
     progress_ = 1.0;
   }

@@ -70,6 +70,7 @@ struct ViewState {
   std::shared_ptr<const SurfacePixels> pixels;    // of the last picture, coarse or whole
   std::shared_ptr<const std::vector<Technique>> techniques;  // null before the first job
   std::string error;                                         // of the scene or the registry as a whole
+  std::string reading;                                       // images that are being filtered; empty: none
   std::map<std::string, Cost> costs;                         // by variant, of `costs_job`
   std::uint64_t costs_job = 0;
   std::string platform, renderer;

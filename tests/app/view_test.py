@@ -202,9 +202,9 @@ class Window:
         self.rest()
         return self.shot()
 
-    def picture(self):
+    def picture(self, end=WINDOW[1] - 130):
         """The rows of the picture alone, without what is written at its head and foot."""
-        return [row[3 * 8:3 * (WIDTH - 8)] for row in read_png(self.settled(), WINDOW[1] - 130)[2][BAR + 40:]]
+        return [row[3 * 8:3 * (WIDTH - 8)] for row in read_png(self.settled(), end)[2][BAR + 40:]]
 
     def leave(self):
         self.do("key", "ctrl+q")
@@ -456,6 +456,91 @@ class ViewTest(unittest.TestCase):
         self.assertNotEqual(camera()["position"], focused["position"])
         window.do("mousemove", WIDTH + 163, 200, "click", "1")
         self.assertEqual(camera(), focused)
+        window.leave()
+
+    def test_files_anywhere_are_read_again(self):
+        """Images and meshes in folders of their own, saved in place or by renaming, also where their paths change while the window is open."""
+        folder = FOLDER / "anywhere"
+        for name in ("images", "meshes/parts", "elsewhere"):
+            (folder / name).mkdir(parents=True)
+        image = lambda colour: "P3 1 1 255\n" + colour + "\n"
+        (folder / "images" / "grey.ppm").write_text(image("128 128 128"))
+        (folder / "images" / "light.ppm").write_text(image("255 255 255"))
+        (folder / "images" / "sky.ppm").write_text("P3 4 2 255\n" + "20 20 20 " * 8)
+        mesh = lambda height: f"mtllib parts/wall.mtl\nv -0.3 0 0\nv 0.3 0 0\nv 0.3 0 {height}\nv -0.3 0 {height}\nf 1 2 3\nf 1 3 4\n"
+        (folder / "meshes" / "wall.obj").write_text(mesh(0.3))
+        (folder / "meshes" / "parts" / "wall.mtl").write_text("newmtl wall\n")
+        (folder / "meshes" / "quad.bin").write_bytes(struct.pack("<9f", -0.4, 0, 0.1, -0.2, 0, 0.1, -0.3, 0.3, 0.1))
+        (folder / "meshes" / "quad.gltf").write_text(json.dumps({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "materials": [{"name": "paint"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}], "buffers": [{"uri": "quad.bin", "byteLength": 36}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-0.4, 0, 0.1], "max": [-0.2, 0.3, 0.1]}]}))
+        file = folder / "scene.toml"
+        text = SCENE.replace("base_color = 0.3", 'base_color_texture = "images/grey.ppm"').replace("radiance = 3.0", 'radiance = 3.0\ntexture = "images/light.ppm"')
+        text += '\n[[material]]\nname = "paint"\n' + "".join(f'\n[[surface]]\ntype = "mesh"\nfile = "meshes/{name}"\n{more}' for name, more in (("wall.obj", 'material = "paint"\n'), ("quad.gltf", "")))
+        text += '\n[sky]\nradiance = 0.5\ntexture = "images/sky.ppm"\n'
+        file.write_text(text)
+        window = self.window(file, "--technique", "ltc")
+        seen = window.picture(340)
+
+        def changes(what, act, says="read again"):
+            nonlocal seen
+            count = window.log().count(says)
+            act()
+            until(lambda: window.log().count(says) > count, what)
+            now = window.picture(340)
+            self.assertFalse(now == seen, what)
+            seen = now
+
+        def renamed(to, content):
+            kept = to.with_name(to.name + "~")
+            to.replace(kept)  # as vim does it
+            time.sleep(0.02)
+            to.write_text(content)
+            kept.unlink()
+
+        def moved_in(to, content):
+            new = to.with_name(".new")
+            new.write_text(content)
+            os.utime(new, (1e9, 1e9))  # older than what it replaces
+            new.replace(to)
+
+        changes("image of a material", lambda: (folder / "images" / "grey.ppm").write_text(image("200 60 60")))
+        changes("image of a light, by renaming", lambda: renamed(folder / "images" / "light.ppm", image("60 255 60")))
+        changes("image of the sky, by another file", lambda: moved_in(folder / "images" / "sky.ppm", "P3 4 2 255\n" + "20 20 80 " * 8))
+        changes("mesh", lambda: (folder / "meshes" / "wall.obj").write_text(mesh(0.6)))
+        changes("buffer of a mesh", lambda: (folder / "meshes" / "quad.bin").write_bytes(struct.pack("<9f", -0.6, 0, 0.1, -0.2, 0, 0.1, -0.3, 0.3, 0.1)))
+        count = window.log().count("read again")
+        (folder / "meshes" / "parts" / "wall.mtl").write_text("newmtl wall\nKd 1 1 1\n")  # looks the same
+        until(lambda: window.log().count("read again") > count, "library of a mesh")
+
+        # The scene names an image in another folder, which comes later.
+        later = folder / "elsewhere" / "later.ppm"
+        count = window.log().count("later.ppm")
+        file.write_text(text.replace("images/grey.ppm", "elsewhere/later.ppm"))
+        until(lambda: window.log().count("later.ppm") > count, "what is missing")
+        self.assertTrue(window.picture(340) == seen)
+        changes("image that was missing", lambda: later.write_text(image("60 60 200")))
+        changes("image in the new folder", lambda: later.write_text(image("250 250 20")))
+        count = window.log().count("read again")
+        (folder / "images" / "grey.ppm").write_text(image("1 1 1"))
+        time.sleep(0.6)
+        self.assertEqual(window.log().count("read again"), count)  # nobody shows it any more
+
+        # Edits that are not saved stay, and so does their undo.
+        before = seen
+        window.do("mousemove", LIGHT[0] + 40, LIGHT[1] - 20, "click", "1")
+        window.drag((LIGHT[0] + 70, LIGHT[1]), (LIGHT[0] + 130, LIGHT[1]))
+        seen = window.picture(340)
+        self.assertFalse(seen == before)
+        changes("image beside edits", lambda: later.write_text(image("20 250 250")))
+        edited = seen
+        window.do("key", "ctrl+s")
+        until(lambda: "saved" in window.log(), "save")
+        self.assertGreater(tomllib.loads(file.read_text())["light"][0]["position"][0], 0.2)
+        window.do("key", "ctrl+z")
+        self.assertFalse(window.picture(340) in (edited, before))  # the light where it was, the image as it is now
         window.leave()
 
     def test_view_transforms(self):
