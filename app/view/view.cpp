@@ -545,13 +545,14 @@ class View {
 
   // What the cost panel says last.
   std::string CostsJson() const {
-    std::string times, cycles, effects;
+    std::string times, cycles, effects, history;
     const auto add = [](std::string& list, const std::string& name, double value) { list += fmt::format("{}\"{}\": {:.6g}", list.empty() ? "" : ", ", name, value); };
     for (const auto& [name, cost] : state_.costs) add(times, name, cost.ratio_to_point);
     for (const auto& [name, count] : cycles_.variants) add(cycles, name, count);
     for (const auto& [name, count] : cycles_.effects) add(effects, name, count);
+    for (const auto& [name, values] : history_) history += fmt::format("{}\"{}\": [{:.6g}]", history.empty() ? "" : ", ", name, fmt::join(values, ", "));
     if (times.empty() && cycles.empty()) return "";
-    return fmt::format(", \"cost\": {{\"ratio_to_point\": {{{}}}, \"gpu\": \"{}\", \"cycles\": {{{}}}, \"cycles_of_effects\": {{{}}}}}", times, cycles_.gpu, cycles, effects);
+    return fmt::format(", \"cost\": {{\"ratio_to_point\": {{{}}}, \"gpu\": \"{}\", \"cycles\": {{{}}}, \"cycles_of_effects\": {{{}}}, \"history_ns_per_pixel\": {{{}}}}}", times, cycles_.gpu, cycles, effects, history);
   }
 
   int FlickerPane() const { return static_cast<int>(Seconds(Clock::now().time_since_epoch()) / kFlickerSeconds) % 2; }

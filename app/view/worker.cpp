@@ -219,7 +219,7 @@ class Worker::Shading {
     options.max_rounds = 15;
     options.seconds = 4.0;
     options.progress = [&](double fraction) {
-      worker_.progress_ = fraction;
+      worker_.progress_ = std::min(fraction, 0.99);  // it is done where its figures are there
       if (worker_.stop_ || worker_.Overtaken()) throw Cancelled();
     };
     const std::vector<Timing> times =
