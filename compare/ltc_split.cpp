@@ -102,26 +102,31 @@ void AddPixel(const Scene& scene, const ShadedPixel& pixel, double roughness, co
   tangent = glm::normalize(tangent);
   const glm::dmat3 local = glm::transpose(glm::dmat3(tangent, glm::cross(n, tangent), n));
   const LtcLookup look = Look(form.tables, roughness, cosine);
-  const glm::dvec4& m = look.m;
   for (const Light& light : scene.lights) {
     Outline outline = OutlineOf(light, pixel.point.position);
     if (outline.empty()) continue;
     for (glm::dvec3& corner : outline) corner = local * corner;
     const LtcHorizon horizon = IsRound(light.shape) ? form.round : form.straight;
     const double form_factor = Treated(outline, horizon).z;
-    Outline lobe = horizon == LtcHorizon::kBoth ? AboveHorizon(outline) : outline;
-    for (glm::dvec3& c : lobe) c = {m.x * c.x + m.z * c.z, c.y, m.y * c.x + m.w * c.z};
-    const glm::dvec3 seen = Treated(lobe, horizon);
-    double weight = look.terms.y;
-    if (form.fresnel_direction) {
-      const glm::dvec3 back(m.w * seen.x - m.z * seen.z, (m.x * m.w - m.y * m.z) * seen.y, m.x * seen.z - m.y * seen.x);
-      const double length = glm::length(back), v_dot_l = length > 0.0 ? (sine * back.x + cosine * back.z) / length : 0.0;
-      const double v_dot_h = std::sqrt(std::clamp(0.5 + 0.5 * v_dot_l, 0.0, 1.0));
-      weight = glm::mix(std::pow(1.0 - v_dot_h, 5.0) * look.terms.x, look.terms.y, seen.z);
-    }
+    const Outline lobe = horizon == LtcHorizon::kBoth ? AboveHorizon(outline) : outline;
+    const bool two = form.tables.kind == FitKind::kTwo;
+    const auto add_lobe = [&](const glm::dvec4& m, double magnitude, double schlick, double cosine_share) {
+      Outline transformed = lobe;
+      for (glm::dvec3& c : transformed) c = {m.x * c.x + m.z * c.z, c.y, m.y * c.x + m.w * c.z};
+      const glm::dvec3 seen = Treated(transformed, horizon);
+      double weight = schlick;
+      if (form.fresnel_direction) {
+        const glm::dvec3 back(m.w * seen.x - m.z * seen.z, (m.x * m.w - m.y * m.z) * seen.y, m.x * seen.z - m.y * seen.x);
+        const double length = glm::length(back), v_dot_l = length > 0.0 ? (sine * back.x + cosine * back.z) / length : 0.0;
+        const double v_dot_h = std::sqrt(std::clamp(0.5 + 0.5 * v_dot_l, 0.0, 1.0));
+        weight = glm::mix(std::pow(1.0 - v_dot_h, 5.0) * magnitude, schlick, seen.z);
+      }
+      specular += pixel.specular_weight * light.radiance * (pixel.f0 * (magnitude - weight) + weight) *
+                  std::max(seen.z + cosine_share * form_factor, 0.0);
+    };
     diffuse += pixel.albedo * light.radiance * form_factor;
-    specular += pixel.specular_weight * light.radiance * (pixel.f0 * (look.terms.x - weight) + weight) *
-                std::max(seen.z + look.terms.z * form_factor, 0.0);
+    add_lobe(look.m, look.terms.x, look.terms.y, two ? 0.0 : look.terms.z);
+    if (two) add_lobe(look.second, look.terms.x * look.terms.z, look.terms.w, 0.0);
   }
 }
 
@@ -132,6 +137,7 @@ FitKind KindOf(const Variant& variant) {
   };
   if (chosen("fit", "l3")) return FitKind::kPublished;
   if (chosen("lobes", "cosine")) return FitKind::kCosine;
+  if (chosen("lobes", "two")) return FitKind::kTwo;
   return chosen("horizon", "true") ? FitKind::kHorizon : FitKind::kPolygon;
 }
 
@@ -210,26 +216,32 @@ LtcTables FineTables(const LtcTables& own, const SurfacePixels& pixels, const st
   hash.Value(own.kind);
   hash.Text(Name(own.brdf));
   const std::string name = "ltc-fine-" + hash.Name();
-  LtcTables fine{own.brdf, own.kind, OwnStorage(own.kind), options.size, {}, {}};
-  const std::size_t count = static_cast<std::size_t>(options.size) * columns.size(), bytes = count * sizeof(glm::vec4);
-  const auto texel = [&](std::size_t k) { return k / columns.size() * static_cast<std::size_t>(options.size) + static_cast<std::size_t>(columns[k % columns.size()]); };
-  if (const std::optional<std::string> stored = ReadCacheEntry(cache, name); stored && stored->size() == 2 * bytes) {
-    std::vector<glm::vec4> packed(2 * count);
-    std::memcpy(packed.data(), stored->data(), stored->size());
-    fine.matrix.resize(static_cast<std::size_t>(options.size) * static_cast<std::size_t>(options.size));
-    fine.terms = fine.matrix;
-    for (std::size_t k = 0; k < count; ++k) fine.matrix[texel(k)] = packed[k], fine.terms[texel(k)] = packed[count + k];
+  // The columns' texels, of the matrices (two lobes' one after the other) and then of the terms.
+  const std::size_t all = static_cast<std::size_t>(options.size) * static_cast<std::size_t>(options.size);
+  const std::size_t matrices = own.kind == FitKind::kTwo ? 2 : 1, count = static_cast<std::size_t>(options.size) * columns.size();
+  std::vector<glm::vec4> packed((matrices + 1) * count);
+  const auto each_texel = [&](LtcTables& tables, const auto& function) {
+    for (std::size_t k = 0; k < packed.size(); ++k) {
+      const std::size_t square = k / count, row = k % count / columns.size(), column = static_cast<std::size_t>(columns[k % columns.size()]);
+      const std::size_t texel = row * static_cast<std::size_t>(options.size) + column;
+      function(packed[k], square < matrices ? tables.matrix[square * all + texel] : tables.terms[texel]);
+    }
+  };
+  const std::size_t bytes = packed.size() * sizeof packed[0];
+  if (const std::optional<std::string> stored = ReadCacheEntry(cache, name); stored && stored->size() == bytes) {
+    std::memcpy(packed.data(), stored->data(), bytes);
+    LtcTables fine{own.brdf, own.kind, OwnStorage(own.kind), options.size, std::vector<glm::vec4>(matrices * all), std::vector<glm::vec4>(all)};
+    each_texel(fine, [](const glm::vec4& kept, glm::vec4& texel) { texel = kept; });
     return fine;
   }
-  fine = FitLtcColumns(own.brdf, own.kind, options, columns);
-  std::vector<glm::vec4> packed(2 * count);
-  for (std::size_t k = 0; k < count; ++k) packed[k] = fine.matrix[texel(k)], packed[count + k] = fine.terms[texel(k)];
-  WriteCacheEntry(cache, name, std::string_view(reinterpret_cast<const char*>(packed.data()), 2 * bytes));
+  LtcTables fine = FitLtcColumns(own.brdf, own.kind, options, columns);
+  each_texel(fine, [](glm::vec4& kept, const glm::vec4& texel) { kept = texel; });
+  WriteCacheEntry(cache, name, std::string_view(reinterpret_cast<const char*>(packed.data()), bytes));
   return fine;
 }
 
 std::optional<std::string> WhyNoCauses(const Variant& variant, const Scene& scene) {
-  if (!variant.options.contains("fit") || variant.options.at("lobes") == "two") return "only variants of one transformed cosine are split by cause";
+  if (!variant.options.contains("fit")) return "only variants of transformed cosines are split by cause";
   if (scene.aperture || scene.sky) return "apertures and skies are not split by cause";
   if (std::ranges::any_of(scene.lights, [](const Light& light) { return light.shape == LightShape::kTube; })) return "tubes are not split by cause";
   return WhyUnsupported(variant, scene);

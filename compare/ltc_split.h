@@ -49,7 +49,7 @@ struct LobePictures {
 LobePictures LtcPicture(const Scene& scene, const SurfacePixels& pixels, const LtcForm& form);
 
 // The variant's table from the library, and the same lobes fitted kLtcRefinement times as densely, at the roughnesses of the picture
-// alone; kept in the cache.
+// alone (two lobes at all rougher ones too, on which theirs hang); kept in the cache.
 LtcTables OwnTables(const Variant& variant, const ShaderLibrary& library, Brdf brdf);
 LtcTables FineTables(const LtcTables& own, const SurfacePixels& pixels, const std::filesystem::path& cache);
 
