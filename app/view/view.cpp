@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <imgui.h>
 #include <unistd.h>
@@ -109,6 +110,19 @@ struct Remembered {
     }
   }
 };
+
+// Standard error as the program was given it: while an image is read beside the window's work, the stream itself is silent
+// (scenes/image.cpp).
+std::FILE* Errors() {
+  static std::FILE* const errors = [] {
+    const int copy = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+    std::FILE* const stream = copy < 0 ? nullptr : fdopen(copy, "w");
+    if (stream == nullptr) return stderr;
+    std::setvbuf(stream, nullptr, _IONBF, 0);
+    return stream;
+  }();
+  return errors;
+}
 
 std::string glfw_trouble;
 
@@ -262,7 +276,7 @@ class View {
       for (const ShadedVariant& variant : state_.variants) {
         if (trouble.empty()) trouble = variant.error;
       }
-      if (!trouble.empty() && trouble != told_) fmt::print(stderr, "{}\n", trouble);
+      if (!trouble.empty() && trouble != told_) fmt::print(Errors(), "{}\n", trouble);
       told_ = trouble;
       redraw_ = std::max(redraw_, 1);
     }
@@ -837,7 +851,7 @@ class View {
 
   // On the picture, and where the program was started from.
   void Say(const std::string& text, bool trouble = false) {
-    fmt::print(stderr, "{}\n", text);
+    fmt::print(Errors(), "{}\n", text);
     message_ = text;
     trouble_ = trouble;
     said_ = Clock::now();
@@ -1078,6 +1092,7 @@ void ChoosePanes(const ViewOptions& options, Session& session) {
 }  // namespace
 
 void RunView(const ViewOptions& given) {
+  Errors();  // before anything is read
   Remembered remembered = Remembered::Load();
   ViewOptions options = given;
   if (options.scene.empty()) options.scene = remembered.scene;
