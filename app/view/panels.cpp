@@ -811,7 +811,7 @@ void DrawBar(PanelContext& context, float width, PanelRequests& requests) {
   if (Scalar("##exposure", exposure, 0.02f, -32.0, 32.0, "%+.2f EV")) session.exposure = exposure;
   Tip("Exposure on top of the scene's, stops. Home: 0. A: automatic.");
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(6.2f * u);
+  ImGui::SetNextItemWidth(7.2f * u);
   TransformCombo(context);
   ImGui::SameLine(ImGui::GetWindowWidth() - 2.6f * u);
   if (ImGui::Button("?", {1.8f * u, 0.0f})) requests.toggle_help = true;
@@ -920,8 +920,10 @@ void DrawOverlay(PanelContext& context, glm::vec2 origin, glm::vec2 size) {
   if (session.false_color && session.layout != Layout::kDifference) {
     DrawLegend(draw, session, {origin.x + size.x - u, origin.y + size.y - u}, u);
   }
-  if (session.inspected) {
-    const ImVec2 at(origin.x + static_cast<float>(session.inspected->x) * size.x, origin.y + static_cast<float>(session.inspected->y) * size.y);
+  const int rings = !session.inspected ? 0 : session.layout == Layout::kGrid ? session.grid_panes : 1;  // one in each pane
+  for (int i = 0; i < rings; ++i) {
+    const glm::vec4 cell = session.layout == Layout::kGrid ? GridCell(i, session.grid_panes, size) : glm::vec4(0.0f, 0.0f, size);
+    const ImVec2 at(origin.x + cell.x + static_cast<float>(session.inspected->x) * cell.z, origin.y + cell.y + static_cast<float>(session.inspected->y) * cell.w);
     draw.AddCircle(at, 0.45f * u, IM_COL32(0, 0, 0, 160), 0, 3.0f);
     draw.AddCircle(at, 0.45f * u, IM_COL32(255, 255, 255, 230), 0, 1.5f);
   }
@@ -975,7 +977,7 @@ void DrawHelp(PanelContext& context, glm::vec2 window) {
   ImGui::SetNextWindowFocus();
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {1.6f * context.unit, 1.2f * context.unit});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.5f * context.unit);
-  ImGui::Begin("##help", nullptr, kFixedWindow | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::Begin("##help", nullptr, (kFixedWindow & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(2);
   if (ImGui::BeginTable("##keys", 2)) {
     for (const Key& key : keys) {

@@ -402,7 +402,7 @@ class View {
     PanelRequests requests;
     if (chrome_ != Chrome::kNone) {
       DrawOverlay(context, glm::vec2(origin_), glm::vec2(size_));
-      if (session_.inspected && session_.show_lobe) DrawLobe(context, glm::vec2(origin_), glm::vec2(size_));
+      if (session_.inspected && session_.show_lobe && !help_) DrawLobe(context, glm::vec2(origin_), glm::vec2(size_));
       DrawStrip(context, glm::vec2(origin_), glm::vec2(size_));
     }
     if (all) {
