@@ -350,7 +350,8 @@ std::vector<std::pair<ShadingPoint, Light>> Configurations(const Setting& settin
       ShadingPoint p;
       p.position = {0.3, -0.2, 0.1};
       p.normal = glm::normalize(dvec3(0.2, 0.1, 1.0));
-      dvec3 t = glm::normalize(glm::cross(p.normal, dvec3(uniform(engine), uniform(engine), -0.3)));
+      const double across_y = uniform(engine), across_x = uniform(engine);
+      dvec3 t = glm::normalize(glm::cross(p.normal, dvec3(across_x, across_y, -0.3)));
       dvec3 b = glm::cross(p.normal, t);
       double sin_v = std::sqrt(1.0 - cos_v * cos_v);
       p.to_view = p.normal * cos_v + t * sin_v;
