@@ -29,6 +29,8 @@ const variantsOf = (scene) => scene.variants.filter((v) => v.stem);
 const variantNamed = (scene, name) => scene.variants.find((v) => v.name === name);
 const shadowOf = (scene) => scene.truth.shadow && scene.truth.shadow.stem ? scene.truth.shadow : null;
 const label = (scene, name) => name === TRUTH ? (scene.truth.visibility ? "truth, with shadows" : "truth") : name === SHADOWED ? "truth, shadowed" : (variantNamed(scene, name) || { short_name: name }).short_name || name;
+// The same where a narrow column may break it: before an option, not within a word.
+const breakable = (text) => text.replace(/[@+]/g, "\u200b$&");
 
 // The source whose technique a variant is: what its citation names, as `compare --source` takes it.
 const OTHERS = "Others and yardsticks";
@@ -512,7 +514,7 @@ function buildThumbs(s) {
     const error = h("span", { class: "err" });
     const box = h("div", { class: "thumb" },
       h("button", { type: "button", class: "open", title: v.summary || "ground truth", onclick: () => set({ a: v.name }) }, picture, map,
-        h("span", { class: "cap" }, h("span", { class: "who", text: label(s, v.name) }), error)),
+        h("span", { class: "cap" }, h("span", { class: "who", text: breakable(label(s, v.name)) }), error)),
       h("button", { type: "button", class: "pick", text: "B", title: `Show ${label(s, v.name)} as B`, "aria-label": `Show ${label(s, v.name)} as B`, onclick: () => set({ b: v.name }) }));
     ui.thumbs.set(v.name, { box, picture, map, error, painted: "" });
     grid.append(box);
@@ -1093,7 +1095,7 @@ function drawValues() {
       }
     }
     rows.push(h("div", { class: "row" + role, "data-variant": name, title: inside && image ? `R ${figure(radiance(image, state.lobe, i, v)[0], 5)}, G ${figure(v[1], 5)}, B ${figure(v[2], 5)} ${scene.unit}` : null, onclick: () => set({ a: name }) },
-      swatch, h("span", { class: "who", text: label(scene, name) }), h("span", { class: "num", text: value }), h("span", { class: "num", text: relative })));
+      swatch, h("span", { class: "who", text: breakable(label(scene, name)) }), h("span", { class: "num", text: value }), h("span", { class: "num", text: relative })));
   }
   ui.values.replaceChildren(...rows);
 }

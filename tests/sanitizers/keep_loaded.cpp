@@ -1,4 +1,4 @@
-// In builds with a sanitizer alone: keeps Mesa's EGL driver loaded to the end. What it leaks has no name in leak.txt once it is gone.
+// In builds with a sanitizer alone: keeps Mesa's driver for EGL and GLX loaded to the end. What it leaks has no name in leak.txt once it is gone.
 #include <dlfcn.h>
 
-[[maybe_unused]] static void* const kDriver = dlopen(AREALAB_EGL_DRIVER, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+[[maybe_unused]] static void* const kDriver = dlopen(AREALAB_GL_DRIVER, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
