@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <fstream>
+#include <span>
 
 #include "app/commands.h"
 #include "compare/subprocess.h"
@@ -46,7 +47,7 @@ struct ExportArguments {
   CommonOptions common;
   std::string scene;
   std::vector<std::string> effects;
-  std::string brdf = "ggx";
+  std::string brdf = "ggx", diffuse = "lambert";
   std::string technique = "ltc";
   std::vector<std::string> forced;
   std::vector<std::string> targets = kExportTargets;
@@ -141,11 +142,12 @@ LightTextureFiles WriteLightTextures(const std::vector<std::string>& forms, cons
   return files;
 }
 
-nlohmann::ordered_json InputsJson(const Variant& variant, const std::vector<Effect>& effects, Brdf brdf, int lights,
+nlohmann::ordered_json InputsJson(const Variant& variant, const std::vector<Effect>& effects, Brdfs brdfs, int lights,
                                   const ExportedShader& shader, const LightTextureFiles& textures) {
   nlohmann::ordered_json json;
   json["variant"] = variant.Name();
-  json["brdf"] = Name(brdf);
+  json["brdf"] = Name(brdfs.specular);
+  json["diffuse_brdf"] = Name(brdfs.diffuse);
   json["effects"] = nlohmann::ordered_json::array();
   for (const Effect& effect : effects) {
     const auto forced = variant.effects.find(effect.name);
@@ -274,13 +276,16 @@ void RunExport(const ExportArguments& arguments) {
   const Variant variant = ParseVariant(techniques, name);
   std::vector<Effect> effects;
   std::vector<Light> shown;
-  Brdf brdf = *std::ranges::find(kBrdfs, arguments.brdf, [](Brdf b) { return std::string(Name(b)); });
+  const auto named = [](std::span<const Brdf> known, const std::string& wanted) {
+    return *std::ranges::find(known, wanted, [](Brdf brdf) { return std::string(Name(brdf)); });
+  };
+  Brdfs brdfs(named(kBrdfs, arguments.brdf), named(kDiffuseBrdfs, arguments.diffuse));
   if (arguments.scene.empty()) {
     effects = NamedEffects(arguments.effects);
   } else {
     const Scene scene = LoadScene(FindScene(arguments.scene));
     effects = SceneEffects(scene);
-    brdf = scene.brdf;
+    brdfs = scene.brdfs();
     shown = EmittingLights(scene);
     if (const auto reason = WhyUnsupported(variant, scene, effects)) {
       throw InputError(fmt::format("{}: {}; expected a technique that supports the scene", scene.file.string(), *reason));
@@ -294,10 +299,10 @@ void RunExport(const ExportArguments& arguments) {
 
   ExportFolder folder(arguments.out);
   const std::string& stem = variant.technique->name;
-  const ExportedShader core = ExportShader(library, variant, effects, brdf, GlslDialect::kCore330, lights);
+  const ExportedShader core = ExportShader(library, variant, effects, brdfs, GlslDialect::kCore330, lights);
   folder.Write(stem + ".330.frag", core.text);
   if (wants("essl300")) {
-    folder.Write(stem + ".300es.frag", ExportShader(library, variant, effects, brdf, GlslDialect::kEs300, lights).text);
+    folder.Write(stem + ".300es.frag", ExportShader(library, variant, effects, brdfs, GlslDialect::kEs300, lights).text);
   }
   if (wants("spirv") || wants("hlsl")) {
     RunTool({"glslangValidator", "-V", "--target-env", "vulkan1.1", "-R", "--amb", "--aml", "--sub", "16", "--sbb", "32", "--sib", "48", "-S",
@@ -311,16 +316,16 @@ void RunExport(const ExportArguments& arguments) {
             "spirv-cross");
     folder.Keep(stem + ".hlsl", true);
   }
-  for (const Table& table : variant.technique->tables) {
+  for (const Table& table : TablesOf(variant, brdfs)) {
     if (std::ranges::find(core.tables, table.name) == core.tables.end()) continue;
-    const std::string file = TableFile(variant, table, brdf);
+    const std::string file = TableFile(variant, table, brdfs);
     const std::optional<std::string> bytes = library.Find(file);
     if (!bytes) throw InputError(fmt::format("{}: does not exist; expected a table that `arealab fit` wrote", library.DisplayPath(file)));
     folder.Write("table_" + table.name + ".exr", *bytes);
     folder.Write("table_" + table.name + ".h", CArray("table_" + table.name, DecodeTable(*bytes, library.DisplayPath(file))));
   }
   const LightTextureFiles textures = WriteLightTextures(core.light_textures, shown, folder);
-  folder.Write("inputs.json", InputsJson(variant, effects, brdf, lights, core, textures).dump(1) + "\n");
+  folder.Write("inputs.json", InputsJson(variant, effects, brdfs, lights, core, textures).dump(1) + "\n");
   folder.Write("README.md", Readme(variant, stem, arguments.targets, core));
   for (const std::string& file : folder.written()) fmt::print("{}\n", folder.Path(file).string());
 }
@@ -332,9 +337,13 @@ void AddExport(CLI::App& app, int& /*status*/) {
   CLI::App* command = app.add_subcommand("export", "The shader that a scene calls for, as text, tables and a description to take home");
   command->add_option("scene", arguments->scene, "a built-in name or a scene file");
   command->add_option("--effects", arguments->effects, "instead of a scene: the effects that are on")->delimiter(',');
-  std::vector<std::string> brdfs;
-  for (const Brdf brdf : kBrdfs) brdfs.emplace_back(Name(brdf));
-  command->add_option("--brdf", arguments->brdf, "with --effects")->capture_default_str()->check(CLI::IsMember(brdfs));
+  const auto names = [](std::span<const Brdf> brdfs) {
+    std::vector<std::string> all;
+    for (const Brdf brdf : brdfs) all.emplace_back(Name(brdf));
+    return all;
+  };
+  command->add_option("--brdf", arguments->brdf, "with --effects")->capture_default_str()->check(CLI::IsMember(names(kBrdfs)));
+  command->add_option("--diffuse", arguments->diffuse, "the diffuse BRDF, with --effects")->capture_default_str()->check(CLI::IsMember(names(kDiffuseBrdfs)));
   command->add_option("--technique", arguments->technique, "a variant")->capture_default_str();
   command->add_option("--effect", arguments->forced, "NAME=0 or NAME=1: forced off or on; may be given several times");
   command->add_option("--target", arguments->targets, "what to write beside the GLSL 3.30 text; hlsl writes spirv too")

@@ -20,7 +20,7 @@ struct FitArguments {
 };
 
 void PrintQuality(const std::filesystem::path& folder, const std::vector<std::string>& names) {
-  for (const Brdf brdf : kBrdfs) {
+  for (const Brdf brdf : kFittedBrdfs) {
     for (const FitKind kind : KindsOf(brdf)) {
       const std::string name = TableName(brdf, kind);
       if (!names.empty() && std::find(names.begin(), names.end(), name) == names.end()) continue;
@@ -42,7 +42,7 @@ void WriteMaps(const std::filesystem::path& folder, const std::vector<std::strin
     for (const double v : values) result.push_back(std::stod(fmt::format("{:.3e}", v)));
     return result;
   };
-  for (const Brdf brdf : kBrdfs) {
+  for (const Brdf brdf : kFittedBrdfs) {
     for (const FitKind kind : KindsOf(brdf)) {
       const std::string name = TableName(brdf, kind);
       if (!names.empty() && std::find(names.begin(), names.end(), name) == names.end()) continue;

@@ -41,6 +41,7 @@ ordered_json AsJson(const Technique& technique) {
           {"diffuse", technique.diffuse},
           {"specular", technique.specular},
           {"brdfs", technique.brdfs},
+          {"diffuse_brdfs", technique.diffuse_brdfs},
           {"effects", technique.effects},
           {"exact", technique.exact},
           {"options", options},

@@ -20,10 +20,10 @@ namespace arealab {
 ClaimBench::ClaimBench(Context& context, const ShaderLibrary& library, const CostMeter* cost)
     : library_(library), techniques_(LoadTechniques(library)), shader_(context, library), cost_(cost) {}
 
-std::vector<Shaded> ClaimBench::Shade(const std::string& variant, const std::vector<PointCase>& cases, Precision precision, Brdf brdf) {
+std::vector<Shaded> ClaimBench::Shade(const std::string& variant, const std::vector<PointCase>& cases, Precision precision, Brdfs brdfs) {
   PointOptions options;
   options.precision = precision;
-  options.brdf = brdf;
+  options.brdfs = brdfs;
   return shader_.Shade(ParseVariant(techniques_, variant), cases, options);
 }
 

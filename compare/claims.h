@@ -50,7 +50,7 @@ class ClaimBench {
 
   // Of the cases as `variant` shades them; in double where asked for.
   std::vector<Shaded> Shade(const std::string& variant, const std::vector<PointCase>& cases,
-                            Precision precision = Precision::kFloat, Brdf brdf = Brdf::kGgx);
+                            Precision precision = Precision::kFloat, Brdfs brdfs = {});
   bool has_cost() const { return cost_ != nullptr; }
   // On bonaire, a light of this shape, diffuse, specular and Fresnel; only where has_cost().
   GpuCost Cost(const std::string& variant, const std::string& shape = "rectangle") const;

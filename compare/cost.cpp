@@ -305,7 +305,7 @@ std::vector<std::map<std::string, GpuCost>> CostMeter::Measure(const ShaderLibra
   std::map<std::string, std::size_t> index;  // by text
   const auto add = [&](std::size_t v, const std::string& place, const std::string& main, int targets,
                        const std::vector<std::pair<std::string, int>>& defines) -> const std::string& {
-    Text text{Expand(library, main, variants[v], defines, Precision::kFloat, scene.brdf), false, targets,
+    Text text{Expand(library, main, variants[v], defines, Precision::kFloat, scene.brdfs()), false, targets,
               fmt::format("{} ({})", variants[v].ShortName(), place)};
     const auto [at, added] = index.emplace(text.source.text, entries.size());
     if (added) entries.push_back({std::move(text), {}, {}, {}, {}, nullptr, {}});

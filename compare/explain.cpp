@@ -53,7 +53,7 @@ void EstimateWays(const CostMeter& meter, const ShaderLibrary& library, const Sc
     const Variant own = VariantFor(variant, needed, asked);
     EffectDefines defines = Defines(effects, own.effects);
     for (const char* path : {"PATH_LIT", "PATH_FAR", needed & kHorizonNeeds ? "PATH_CROSSING" : "PATH_ABOVE"}) defines.emplace_back(path, 1);
-    passes.push_back(Expand(library, "lighting.frag", own, defines, Precision::kFloat, scene.brdf));
+    passes.push_back(Expand(library, "lighting.frag", own, defines, Precision::kFloat, scene.brdfs()));
   };
   for (const auto& [needed, count] : tiles) {
     pass(needed, 0);
@@ -90,7 +90,7 @@ Explanation Explain(const Context& context, Renderer& renderer, const ShaderLibr
   // First the program itself, for its cycles, and the one with every effect, then one per effect with that turned the other way.
   const Variant all = WithAllEffects(variant);
   const std::string text =
-      Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), Precision::kFloat, scene.brdf).text;
+      Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), Precision::kFloat, scene.brdfs()).text;
   std::vector<Variant> programs{variant, all};
   std::vector<std::size_t> turned;  // by program, from the third
   for (std::size_t i = 0; i < effects.size(); ++i) {
@@ -107,6 +107,12 @@ Explanation Explain(const Context& context, Renderer& renderer, const ShaderLibr
       turned.push_back(i);
     }
     explanation.effects.push_back(std::move(price));
+  }
+
+  const bool lambert = scene.diffuse == Brdf::kLambert;
+  if (!lambert) {
+    const std::string name = Name(scene.diffuse);
+    explanation.effects.push_back({{name, true, fmt::format("the scene's diffuse BRDF is {}, over Lambert's", name)}, false, true, {}, {}});
   }
 
   std::vector<std::string> ways;
@@ -151,6 +157,12 @@ Explanation Explain(const Context& context, Renderer& renderer, const ShaderLibr
       const int more = costs[i + 2].at(gpu).full.cycles - own;
       price.cycles[gpu] = price.effect.on ? -more : more;
     }
+  }
+  if (!lambert) {
+    Scene even = scene;
+    even.diffuse = Brdf::kLambert;
+    const auto without = options.meter->Measure(library, {variant}, even);
+    for (const std::string& gpu : options.meter->gpus()) explanation.effects.back().cycles[gpu] = costs[0].at(gpu).full.cycles - without[0].at(gpu).full.cycles;
   }
   if (!ways.empty()) EstimateWays(*options.meter, library, scene, effects, variant, renderer.TileNeeds(variant), saving);
   return explanation;

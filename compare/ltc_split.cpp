@@ -187,7 +187,7 @@ LtcTables OwnTables(const Variant& variant, const ShaderLibrary& library, Brdf b
   };
   tables.storage = {static_cast<LtcFrame>(among("frame", {"mirror", "normal"})), static_cast<LtcNorm>(among("norm", {"middle", "none", "last"})),
                     static_cast<LtcAxis>(among("axis", {"sqrt", "cos", "theta"}))};
-  for (const Table& table : variant.technique->tables) {
+  for (const Table& table : TablesOf(variant, brdf)) {
     if (!table.name.starts_with("ltc_")) continue;
     const std::string name = TableFile(variant, table, brdf);
     const std::optional<std::string> bytes = library.Find(name);
@@ -230,7 +230,7 @@ LtcTables FineTables(const LtcTables& own, const SurfacePixels& pixels, const st
   const std::size_t bytes = packed.size() * sizeof packed[0];
   if (const std::optional<std::string> stored = ReadCacheEntry(cache, name); stored && stored->size() == bytes) {
     std::memcpy(packed.data(), stored->data(), bytes);
-    LtcTables fine{own.brdf, own.kind, OwnStorage(own.kind), options.size, std::vector<glm::vec4>(matrices * all), std::vector<glm::vec4>(all)};
+    LtcTables fine{own.brdf, own.kind, OwnStorage(own.brdf, own.kind), options.size, std::vector<glm::vec4>(matrices * all), std::vector<glm::vec4>(all)};
     each_texel(fine, [](const glm::vec4& kept, glm::vec4& texel) { texel = kept; });
     return fine;
   }
@@ -242,6 +242,7 @@ LtcTables FineTables(const LtcTables& own, const SurfacePixels& pixels, const st
 
 std::optional<std::string> WhyNoCauses(const Variant& variant, const Scene& scene) {
   if (!variant.options.contains("fit")) return "only variants of transformed cosines are split by cause";
+  if (scene.diffuse != Brdf::kLambert) return "only Lambert's diffuse BRDF is split by cause";
   if (scene.aperture || scene.sky) return "apertures and skies are not split by cause";
   if (std::ranges::any_of(scene.lights, [](const Light& light) { return light.shape == LightShape::kTube; })) return "tubes are not split by cause";
   return WhyUnsupported(variant, scene);

@@ -95,9 +95,10 @@ Light PointCase::Light() const {
   return light;
 }
 
-LightIntegrals PointCase::Truth(double tolerance, Brdf brdf) const {
-  return IntegrateLight({position, glm::normalize(normal), glm::normalize(to_view), std::max(roughness * roughness, 1e-4), brdf}, Light(),
-                        tolerance);
+LightIntegrals PointCase::Truth(double tolerance, Brdfs brdfs) const {
+  return IntegrateLight({position, glm::normalize(normal), glm::normalize(to_view), std::max(roughness * roughness, 1e-4), brdfs.specular,
+                         brdfs.diffuse, roughness},
+                        Light(), tolerance);
 }
 
 struct PointShader::Impl {
@@ -135,7 +136,7 @@ struct PointShader::Impl {
   const Program& Prepare(const Variant& variant, std::span<const PointCase> all,
                          const PointOptions& options) {
     const ExpandedSource source = Expand(library, options.strict ? "strict_points.frag" : "points.frag",
-                                         variant, EffectsOf(all), options.precision, options.brdf);
+                                         variant, EffectsOf(all), options.precision, options.brdfs);
     std::unique_ptr<Program>& program = programs[source.text];
     if (!program) program = std::make_unique<Program>(gl, fullscreen, source);
     for (const Knob& knob : variant.technique->knobs) {
@@ -145,8 +146,8 @@ struct PointShader::Impl {
     }
     program->Set("as_lighting_pass", static_cast<int>(options.as_lighting_pass));
     GLuint unit = kFirstTableUnit;
-    for (const Table& table : variant.technique->tables) {
-      gl.BindTextureUnit(unit, LoadTable(TableFile(variant, table, options.brdf), options.half_tables));
+    for (const Table& table : TablesOf(variant, options.brdfs)) {
+      gl.BindTextureUnit(unit, LoadTable(TableFile(variant, table, options.brdfs), options.half_tables));
       program->Set("table_" + table.name, static_cast<int>(unit++));
     }
     return *program;

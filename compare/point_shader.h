@@ -35,7 +35,7 @@ struct PointCase {
   // size, the light's distance or its radiance becomes 0.
   std::optional<PointCase> AsHalves() const;
   arealab::Light Light() const;
-  LightIntegrals Truth(double tolerance = 1e-4, Brdf brdf = Brdf::kGgx) const;  // for radiance 1
+  LightIntegrals Truth(double tolerance = 1e-4, Brdfs brdfs = {}) const;  // for radiance 1
 };
 
 struct Shaded {
@@ -49,7 +49,7 @@ struct PointOptions {
       false;  // black where the lighting pass shades nothing: behind the light, away from the viewer
   bool strict = false;       // min, max and clamp pass a NaN on (glsl/strict_order.glsl); in float alone
   bool half_tables = false;  // the tables' texels rounded to half floats
-  Brdf brdf = Brdf::kGgx;
+  Brdfs brdfs = {};
 };
 
 class PointShader {

@@ -160,11 +160,11 @@ class SampledLight {
     Weighted w;
     w.group = group;
     std::array<double, kIntegrals> weight;
-    weight[kDiffuse] = cos_l / density;
     const double cos_h = glm::dot(z_, half), tan2_h = std::max(1.0 / (cos_h * cos_h) - 1.0, 0.0);
     weight[kSpecular] = density_h * cos_l / density *
                           dual::BrdfOverGgx(point_->brdf, cos_v_, cos_l, glm::dot(half, point_->to_view), tan2_h,
                                             point_->alpha);
+    weight[kDiffuse] = cos_l / density * dual::BrdfOverGgx(point_->diffuse, cos_v_, cos_l, glm::dot(half, point_->to_view), tan2_h, 1.0, point_->roughness);
     weight[kGrazing] = weight[kSpecular] * dual::SchlickWeight(glm::dot(half, point_->to_view));
     if (!std::isfinite(weight[kDiffuse]) || !std::isfinite(weight[kSpecular])) return;
     glm::dvec3 texel(1.0);

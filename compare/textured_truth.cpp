@@ -222,7 +222,7 @@ class Cubature {
 
   // The square's rule.
   TexturedSums Sum(const LightSquare& s) const {
-    return dual::WithBrdf(brdf_, [&](const auto& over_ggx) {
+    return dual::WithBrdf(brdf_, 0.0, [&](const auto& over_ggx) {
       std::array<glm::dvec3, kNodes * kNodes> weights;
       weights_.Weights(s.level, s.x, s.y, weights);
       const double side = std::ldexp(1.0, -s.level), area = area_ * side * side;

@@ -1,5 +1,6 @@
 #include "compare/truth.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -15,6 +16,7 @@
 #include "compare/textured_sky.h"
 #include "compare/textured_truth.h"
 #include "compare/truth_bands.h"
+#include "scenes/error.h"
 
 namespace arealab {
 namespace {
@@ -32,6 +34,8 @@ std::optional<ShadedPixel> ShadedPixelAt(const Scene& scene, const SurfacePixels
   double roughness = static_cast<double>(pixels.normal[i].w);
   pixel.point.alpha = std::max(roughness * roughness, kMinAlpha);
   pixel.point.brdf = scene.brdf;
+  pixel.point.diffuse = scene.diffuse;
+  pixel.point.roughness = roughness;
   if (!(glm::dot(pixel.point.normal, pixel.point.to_view) > 0.0)) return std::nullopt;
   glm::dvec3 base(pixels.base_color[i]);
   double metalness = std::max(static_cast<double>(pixels.base_color[i].w), 0.0);
@@ -94,6 +98,7 @@ TruthBand ShadeBand(const Scene& scene, const SceneLights& lights, const SkyInte
 }  // namespace
 
 BandShader UnshadowedBands(const Scene& scene, const SurfacePixels& pixels, double tolerance) {
+  if (const auto why = WhyNotDiffuse(scene)) throw InputError(fmt::format("{}; expected {}", *why, Name(Brdf::kLambert)));
   return [&scene, lights = SceneLights(scene), sky = SkyIntegrals(scene, pixels), textured_sky = std::make_shared<const TexturedSky>(scene), &pixels,
           tolerance](int row_begin, int row_end) {
     return ShadeBand(scene, lights, sky, *textured_sky, pixels, row_begin, row_end, tolerance);

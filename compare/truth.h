@@ -12,7 +12,7 @@ namespace arealab {
 
 // What one light does to one shaded point, for white albedo and unit radiance.
 struct LightIntegrals {
-  double form_factor = 0.0;  // ∫ cosθ_i / π dω over the visible light
+  double form_factor = 0.0;  // ∫ cosθ_i / π dω over the visible light; of another diffuse BRDF than Lambert's ∫ f cosθ_i dω
   double specular = 0.0;     // ∫ f cosθ_i dω with Fresnel 1; of ggx ∫ D G2 / (4 cosθ_o) dω
   double specular_grazing =
       0.0;  // the same weighted by (1 − h·v)^5: radiance = F0·(specular − grazing) + grazing
@@ -27,9 +27,11 @@ struct ShadingPoint {
   glm::dvec3 to_view;   // unit
   double alpha;         // roughness²
   Brdf brdf = Brdf::kGgx;
+  Brdf diffuse = Brdf::kLambert;
+  double roughness = 0.0;  // for a diffuse BRDF other than Lambert's
 };
 
-// Throws nothing; a point turned away from the viewer, or a light wholly below the horizon or facing away,
+// Throws nothing. The specular lobe is that of `brdf`, which may be a diffuse one too, with alpha = 1. A point turned away from the viewer, or a light wholly below the horizon or facing away,
 // gives zeros.
 LightIntegrals IntegrateLight(const ShadingPoint& point, const Light& light, double tolerance);
 

@@ -84,6 +84,7 @@ void AddTruth(ContentHash& hash, const Scene& scene, const SurfacePixels& pixels
   hash.Value(pixels.height);
   AddVector(hash, glm::dvec3(pixels.view_position));
   if (scene.brdf != Brdf::kGgx) hash.Value(scene.brdf);  // left out, the default's truths keep their names
+  if (scene.diffuse != Brdf::kLambert) hash.Value(scene.diffuse);
   if (scene.sky) AddVector(hash, scene.sky->radiance);
   if (scene.sky && scene.sky->texture) {
     hash.Value(kTexturedSkyVersion);

@@ -330,7 +330,7 @@ __attribute__((flatten)) Sums IntegratePlain(const Outline& outline, const LobeV
 
 Sums Integrate(const Outline& outline, const LobeView& view, const TruthLevel& level, Brdf brdf) {
   static const bool kAvx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return dual::WithBrdf(brdf, [&](const auto& over_ggx) {
+  return dual::WithBrdf(brdf, view.roughness, [&](const auto& over_ggx) {
     return kAvx2 ? IntegrateAvx2(outline, view, level, over_ggx)
                  : IntegratePlain(outline, view, level, over_ggx);
   });
@@ -531,7 +531,7 @@ void AddPanels(Outline& outline, const LobeView& view, int index, double foot, d
 
 // Whether the lobe's tail falls as exp(−|s|²/α²) or nearly so, where GGX's falls as |s|⁻⁴.
 bool IsSteep(Brdf brdf) {
-  return brdf != Brdf::kGgx && brdf != Brdf::kGgxSeparable;
+  return brdf != Brdf::kGgx && brdf != Brdf::kGgxSeparable && !IsDiffuse(brdf);
 }
 
 // The outline's nearest points to the center, hence its panels; 5 samples on each arc to begin with.
@@ -709,6 +709,7 @@ bool MakeOutline(const ShadingPoint& point, const Light& light, Outline& outline
   view.sin_v = sin_v;
   view.cos_v = cos_v;
   view.alpha = point.alpha;
+  view.roughness = point.roughness;
   glm::dvec3 mirror(-sin_v, 0.0, cos_v);
   glm::dvec3 center = local(light.center - point.position);
   bool mirror_inside = true;
@@ -838,9 +839,8 @@ constexpr std::size_t kTubeFirst = 2;
 // A difference can be small by chance: no error below this share of the tolerance is stated.
 constexpr double kLeastStated = 0.25;
 
-}  // namespace
-
-LightIntegrals IntegrateLight(const ShadingPoint& point, const Light& light, double tolerance) {
+// The closed form factor, and the specular lobe.
+LightIntegrals IntegrateLobe(const ShadingPoint& point, const Light& light, double tolerance) {
   LightIntegrals result;
   Outline outline;
   LobeView view;
@@ -874,6 +874,20 @@ LightIntegrals IntegrateLight(const ShadingPoint& point, const Light& light, dou
     }
     before = sums;
   }
+  return result;
+}
+
+}  // namespace
+
+LightIntegrals IntegrateLight(const ShadingPoint& point, const Light& light, double tolerance) {
+  LightIntegrals result = IntegrateLobe(point, light, tolerance);
+  if (point.diffuse == Brdf::kLambert || result.form_factor == 0.0) return result;
+  ShadingPoint matte = point;
+  matte.brdf = point.diffuse;
+  matte.alpha = 1.0;
+  const LightIntegrals lobe = IntegrateLobe(matte, light, tolerance);
+  result.form_factor = lobe.specular;
+  result.form_factor_error = lobe.specular_error;
   return result;
 }
 

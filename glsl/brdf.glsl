@@ -7,6 +7,9 @@
 //   float BrdfOverGgx(float n_dot_v, float n_dot_l, float v_dot_h, float tan2_h, float alpha)
 // the BRDF with Fresnel 1 over GgxDensity of the same alpha, 1; cosines positive, tan2_h = tan²θ of the half vector. All lobes have about the width
 // of GGX's peak, so that what is left beside it is smooth, and a sharp peak keeps its digits in float.
+//
+// The scene's diffuse BRDF is a file glsl/diffuse/NAME.glsl, `#include "diffuse"`, with two functions: the BRDF over Lambert's, and what
+// becomes of the albedo for one direction to the light. DIFFUSE_NAME is 1 for it, 0 for the others.
 #include "surface.glsl"
 
 // GGX density of facet normals D(h), 1/sr, isotropic; n_dot_h in [0, 1] [Walter 2007, eq. 33].

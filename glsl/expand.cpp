@@ -63,8 +63,8 @@ std::optional<std::string_view> AfterDirective(std::string_view line, std::strin
 
 class Expander {
  public:
-  Expander(const ShaderLibrary& library, const Variant& variant, Precision precision, Brdf brdf)
-      : library_(library), variant_(variant), precision_(precision), brdf_(brdf) {}
+  Expander(const ShaderLibrary& library, const Variant& variant, Precision precision, Brdfs brdfs)
+      : library_(library), variant_(variant), precision_(precision), brdfs_(brdfs) {}
 
   ExpandedSource Run(const std::string& main, const std::vector<std::pair<std::string, int>>& effects) {
     EmitPrologue(effects);
@@ -100,6 +100,7 @@ class Expander {
     EmitHost("#define INOUT(type) inout type");
     EmitHost("#define assert(condition)");
     for (const auto& [name, value] : effects) EmitHost(fmt::format("#define {} {}", name, value));
+    for (const Brdf brdf : kDiffuseBrdfs) EmitHost(fmt::format("#define DIFFUSE_{} {}", Upper(Name(brdf)), brdf == brdfs_.diffuse ? 1 : 0));
     // Which answers to assume: none but where the host asks (glsl/lit.glsl, glsl/path.glsl).
     for (const std::string_view path : {"PATH_LIT", "PATH_ABOVE", "PATH_CROSSING", "PATH_BELOW", "PATH_FAR", "PATH_NEAR"}) {
       const auto named = [&](const auto& effect) { return effect.first == path; };
@@ -114,7 +115,7 @@ class Expander {
     }
     for (const Knob& knob : variant_.technique->knobs)
       EmitHost(fmt::format("uniform float knob_{};", knob.name));
-    for (const Table& table : variant_.technique->tables) {
+    for (const Table& table : TablesOf(variant_, brdfs_)) {
       EmitHost(fmt::format("uniform sampler2D table_{};", table.name));
     }
   }
@@ -128,7 +129,8 @@ class Expander {
              : precision_ == Precision::kHalf ? "platform_half.glsl"
                                               : "platform_float.glsl";
     }
-    if (name == "brdf" || name == "importance_cone" || name == "specular_albedo") return fmt::format("{}/{}.glsl", name, Name(brdf_));
+    if (name == "brdf" || name == "importance_cone" || name == "specular_albedo") return fmt::format("{}/{}.glsl", name, Name(brdfs_.specular));
+    if (name == "diffuse") return fmt::format("{}/{}.glsl", name, Name(brdfs_.diffuse));
     if (!variant_.technique) return name;
     // What the pass does where the technique does not take it itself.
     if (name == "visibility") return Takes("aperture") ? "visibility/own.glsl" : "visibility/aperture.glsl";
@@ -140,7 +142,7 @@ class Expander {
 
   [[noreturn]] void FailUnknown(const std::string& name, const std::string& resolved,
                                 const std::string& where) const {
-    std::vector<std::string> special{"\"platform\"", "\"brdf\""};
+    std::vector<std::string> special{"\"platform\"", "\"brdf\"", "\"diffuse\""};
     if (variant_.technique) {
       special.emplace_back("\"technique\"");
       for (const Option& option : variant_.technique->options)
@@ -208,7 +210,7 @@ class Expander {
   const ShaderLibrary& library_;
   const Variant& variant_;
   Precision precision_;
-  Brdf brdf_;
+  Brdfs brdfs_;
   ExpandedSource out_;
   std::set<std::string> included_;
   std::vector<std::string> open_;  // from the main file to the one being read
@@ -281,8 +283,8 @@ std::string ExpandedSource::RewriteLog(const std::string& log) const {
 
 ExpandedSource Expand(const ShaderLibrary& library, const std::string& main, const Variant& variant,
                       const std::vector<std::pair<std::string, int>>& effects, Precision precision,
-                      Brdf brdf) {
-  return Expander(library, variant, precision, brdf).Run(main, effects);
+                      Brdfs brdfs) {
+  return Expander(library, variant, precision, brdfs).Run(main, effects);
 }
 
 }  // namespace arealab

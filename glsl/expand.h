@@ -30,12 +30,12 @@ struct ExpandedSource {
 };
 
 // Expands `main` ("lighting.frag"): `#include "technique"` is the variant's file, `#include "OPTION"` the chosen file
-// of that option, `#include "platform"` glsl/platform_float.glsl, platform_double or platform_half, `#include "brdf"`, "importance_cone" and "specular_albedo" the scene's BRDF in the folder of that name, any other a name in the
+// of that option, `#include "platform"` glsl/platform_float.glsl, platform_double or platform_half, `#include "brdf"`, "importance_cone" and "specular_albedo" the scene's BRDF in the folder of that name, "diffuse" its diffuse one, any other a name in the
 // library.
 // Each file is included once; a cycle or an unknown include throws InputError with file and line.
 // `effects` are all EFFECT_* names with 0 or 1; they and the option defines head the text.
 ExpandedSource Expand(const ShaderLibrary& library, const std::string& main, const Variant& variant,
                       const std::vector<std::pair<std::string, int>>& effects, Precision precision,
-                      Brdf brdf = Brdf::kGgx);
+                      Brdfs brdfs = {});
 
 }  // namespace arealab

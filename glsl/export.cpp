@@ -64,7 +64,7 @@ std::string Comment(const std::string& text) {
   return lines + line + "\n";
 }
 
-std::string Heading(const Variant& variant, const std::vector<Effect>& effects, Brdf brdf) {
+std::string Heading(const Variant& variant, const std::vector<Effect>& effects, Brdfs brdfs) {
   const Technique& technique = *variant.technique;
   std::string on, off;
   for (const Effect& effect : effects) {
@@ -73,15 +73,15 @@ std::string Heading(const Variant& variant, const std::vector<Effect>& effects, 
     list += (list.empty() ? "" : ", ") + effect.name;
   }
   return Comment(variant.Name() + ": " + technique.summary + ".") + Comment("Source: " + technique.citation + ".") +
-         Comment("Note: " + technique.author_note) + Comment(fmt::format("BRDF: {}. With: {}. Without: {}.", Name(brdf), on, off)) +
+         Comment("Note: " + technique.author_note) + Comment(fmt::format("BRDF: {}, diffuse {}. With: {}. Without: {}.", Name(brdfs.specular), Name(brdfs.diffuse), on, off)) +
          "// From AreaLab's lighting pass. SPDX-License-Identifier: MIT. Copyright (c) 2026 The AreaLab authors.\n";
 }
 
 }  // namespace
 
-ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Brdf brdf,
+ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Brdfs brdfs,
                             GlslDialect dialect, int lights) {
-  const DecidedText decided = Decide(Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), Precision::kFloat, brdf));
+  const DecidedText decided = Decide(Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), Precision::kFloat, brdfs));
   std::vector<Declaration> declarations = Declarations(decided.lines);
 
   // Backwards from main.
@@ -108,7 +108,7 @@ ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant
   shader.text = dialect == GlslDialect::kEs300
                     ? "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp sampler2DArray;\n"
                     : "#version 330 core\n";
-  shader.text += Heading(variant, effects, brdf) + "\n";
+  shader.text += Heading(variant, effects, brdfs) + "\n";
   static const std::regex binding("layout\\(binding = \\d+\\) |, binding = \\d+");
   static const std::regex capacity("(#define MAX_LIGHTS) \\d+");
   static const std::regex asserts("[ \\t]*\\bassert\\([^\\n]*\\);\\n");
@@ -139,7 +139,7 @@ ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant
   while (shader.text.ends_with("\n\n")) shader.text.pop_back();
 
   const std::set<std::string> words = Words(WithoutComments(shader.text));
-  for (const Table& table : variant.technique->tables) {
+  for (const Table& table : TablesOf(variant, brdfs)) {
     if (words.contains("table_" + table.name)) shader.tables.push_back(table.name);
   }
   for (const Knob& knob : variant.technique->knobs) {

@@ -21,7 +21,7 @@ struct ExportedShader {
 // The lighting pass (glsl/lighting.frag) of the variant as one text: no include, no condition that the effects or the options decide,
 // only functions, constants and uniforms that are used; comments and citations stay. Its forced effects have the last word. An array
 // of lights holds at most `lights`. Throws InputError as Expand does.
-ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Brdf brdf,
+ExportedShader ExportShader(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Brdfs brdfs,
                             GlslDialect dialect, int lights);
 
 }  // namespace arealab

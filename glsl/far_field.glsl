@@ -1,5 +1,7 @@
 #pragma once
 // A light so far that it is a point: what any light tends to.
+#include "brdf.glsl"
+#include "diffuse"
 #include "light_texture.glsl"
 #include "lit.glsl"
 #include "specular_lobe.glsl"
@@ -28,7 +30,7 @@ Radiance FarField(Surface surface, Light light, vec3 to_view) {
 #endif
   vec3 irradiance = MeanRadiance(light) * (light.area * cos_light * n_dot_l * (inverse * inverse));
 
-  radiance.diffuse = surface.diffuse_albedo * irradiance / kPi;
+  radiance.diffuse = DiffuseAlbedo(surface, to_view, to_light) * irradiance / kPi;
 
   radiance.specular = SpecularBrdf(surface, to_view, to_light) * irradiance;
   return radiance;

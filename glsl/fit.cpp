@@ -128,7 +128,7 @@ class Progress {
 LtcTables FitColumns(Brdf brdf, FitKind kind, const FitOptions& options, const std::vector<int>& columns,
                      const std::function<void(double)>& report) {
   const int size = options.size;
-  LtcTables tables{brdf, kind, OwnStorage(kind), size, {}, {}};
+  LtcTables tables{brdf, kind, OwnStorage(brdf, kind), size, {}, {}};
   const auto count = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   tables.matrix.resize(count * LobesOf(kind));
   tables.terms.resize(count);
@@ -206,6 +206,8 @@ std::string Stem(FitKind kind) {
   return {};
 }
 
+std::string NameInFiles(Brdf brdf) { return std::string(Name(brdf)) + (IsDiffuse(brdf) ? "_diffuse" : ""); }
+
 // The options that choose it: fit, lobes, horizon.
 std::string FilePrefix(FitKind kind) {
   switch (kind) {
@@ -252,28 +254,29 @@ std::vector<glm::vec4> ReadExr(const std::filesystem::path& file, std::size_t sq
 }  // namespace
 
 std::string MatrixFile(Brdf brdf, FitKind kind, const LtcStorage& storage) {
-  return fmt::format("ltc_{}_{}_{}_{}_{}.exr", Name(brdf), FilePrefix(kind),
+  return fmt::format("ltc_{}_{}_{}_{}_{}.exr", NameInFiles(brdf), FilePrefix(kind),
                      kFrameNames[static_cast<std::size_t>(storage.frame)],
                      kNormNames[static_cast<std::size_t>(storage.norm)],
                      kAxisNames[static_cast<std::size_t>(storage.axis)]);
 }
 
 std::string TermsFile(Brdf brdf, FitKind kind, LtcAxis axis) {
-  return fmt::format("ltc_{}_{}_{}_terms.exr", Name(brdf), FilePrefix(kind),
+  return fmt::format("ltc_{}_{}_{}_terms.exr", NameInFiles(brdf), FilePrefix(kind),
                      kAxisNames[static_cast<std::size_t>(axis)]);
 }
 
-LtcStorage OwnStorage(FitKind kind) {
+LtcStorage OwnStorage(Brdf brdf, FitKind kind) {
   LtcStorage storage;
-  if (kind == FitKind::kPublished) storage.frame = LtcFrame::kNormal;
+  if (kind == FitKind::kPublished || IsDiffuse(brdf)) storage.frame = LtcFrame::kNormal;
   return storage;
 }
 
 std::vector<LtcStorage> StoragesOf(Brdf brdf, FitKind kind) {
-  std::vector<LtcStorage> storages{OwnStorage(kind)};
+  std::vector<LtcStorage> storages{OwnStorage(brdf, kind)};
   const auto add = [&](const LtcStorage& storage) {
     if (std::find(storages.begin(), storages.end(), storage) == storages.end()) storages.push_back(storage);
   };
+  if (IsDiffuse(brdf)) return storages;
   if (kind == FitKind::kPolygon || kind == FitKind::kPublished) {
     add({LtcFrame::kMirror, LtcNorm::kMiddle, LtcAxis::kSqrt});
     add({LtcFrame::kNormal, LtcNorm::kMiddle, LtcAxis::kSqrt});
@@ -310,12 +313,12 @@ std::vector<FitKind> KindsOf(Brdf brdf) {
 }
 
 std::string TableName(Brdf brdf, FitKind kind) {
-  return fmt::format("ltc_{}_{}", Name(brdf), Stem(kind));
+  return fmt::format("ltc_{}_{}", NameInFiles(brdf), Stem(kind));
 }
 
 std::vector<std::string> TableNames() {
   std::vector<std::string> names;
-  for (const Brdf brdf : kBrdfs)
+  for (const Brdf brdf : kFittedBrdfs)
     for (const FitKind kind : KindsOf(brdf)) names.push_back(TableName(brdf, kind));
   names.emplace_back("sphere");
   return names;
@@ -433,7 +436,7 @@ void FitTables(const std::filesystem::path& folder, const FitOptions& options,
       part(1.0);
       continue;
     }
-    for (const Brdf brdf : kBrdfs)
+    for (const Brdf brdf : kFittedBrdfs)
       for (const FitKind kind : KindsOf(brdf))
         if (name == TableName(brdf, kind)) WriteLtc(folder, FitLtc(brdf, kind, options, part));
   }
@@ -456,7 +459,7 @@ LtcTables ReadLtcTables(const std::filesystem::path& folder, Brdf brdf, FitKind 
 }
 
 LtcTables ReadLtcTables(const std::filesystem::path& folder, Brdf brdf, FitKind kind) {
-  return ReadLtcTables(folder, brdf, kind, OwnStorage(kind));
+  return ReadLtcTables(folder, brdf, kind, OwnStorage(brdf, kind));
 }
 
 }  // namespace arealab

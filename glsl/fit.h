@@ -16,7 +16,7 @@
 //   polygon_two_lobe (ltc_ggx_two)        two lobes with matrices of their own, the second's table below the first's
 //   polygon_one_true (ltc_ggx_horizon)    the same as the first for a shader that clips at the surface's horizon too
 //   l3_one_lobe (ltc_ggx_l3)              the published kind [Heitz et al. 2016]
-// for ggx; the other BRDFs have the first and the last.
+// for ggx; the other BRDFs have the first and the last, under BRDF = disney_diffuse Disney's diffuse one too.
 // and how the lobes are stored, which moves what lies between the nodes:
 //   frame: mirror, m' of M⁻¹·R with m0' = m0 c + m2 s, m1' = m1 c + m3 s, m2' = m2 c − m0 s, m3' = m3 c − m1
 //   s, c = cos θ
@@ -28,8 +28,8 @@
 //   axis: sqrt, x = √((1 − cos θ)/(1 − cos 89°)) clamped to 1, for l3 x = √(1 − cos θ) with its last row at θ
 //   = 1.57.
 //     cos, x = 1 − cos θ. theta, x = 2θ/π.
-//   A lobe is fitted once, in its own storage (mirror, middle, sqrt; l3: normal, middle, sqrt), and read from
-//   there.
+//   A lobe is fitted once, in its own storage (mirror, middle, sqrt; l3 and diffuse ones, which stay about the normal: normal, middle,
+//   sqrt), and read from there.
 // ltc_ggx_FIT_LOBES_HORIZON_AXIS_terms.exr: R, G, B, A = magnitude, Schlick term, cosine weight, L, so that
 //     specular = (LTC + B · E) · (F0 · (R − G) + G) · radiance,
 //   LTC the transformed polygon's form factor (clipped at z = 0 after M⁻¹) and E the polygon's own (clipped
@@ -69,7 +69,7 @@ struct LtcStorage {
   LtcAxis axis = LtcAxis::kSqrt;
   bool operator==(const LtcStorage&) const = default;
 };
-LtcStorage OwnStorage(FitKind kind);
+LtcStorage OwnStorage(Brdf brdf, FitKind kind);
 // All that are written, its own first.
 std::vector<LtcStorage> StoragesOf(Brdf brdf, FitKind kind);
 
@@ -104,10 +104,13 @@ struct FitOptions {
   std::vector<std::string> tables;  // stems among TableNames(); empty: all
 };
 
+// All that have tables: a scene's choices but Lambert, who needs none.
+constexpr Brdf kFittedBrdfs[] = {Brdf::kGgx, Brdf::kGgxSeparable, Brdf::kBeckmann, Brdf::kBlinnPhong, Brdf::kWard, Brdf::kPhong, Brdf::kDisney};
+
 // What is fitted for each BRDF, once each.
 std::vector<FitKind> KindsOf(Brdf brdf);
 
-// "ltc_ggx_polygon", "ltc_ward_l3": as `arealab fit --table` takes it.
+// "ltc_ggx_polygon", "ltc_ward_l3", "ltc_disney_diffuse_polygon": as `arealab fit --table` takes it.
 std::string TableName(Brdf brdf, FitKind kind);
 
 // All of them, and "sphere".

@@ -307,7 +307,8 @@ double LtcDensity(const Terms& p, const glm::dvec3& v, double scale, Terms* grad
   return density;
 }
 
-Whitening MirrorWhitening(const View& view) {
+Whitening LobeWhitening(const View& view) {
+  if (IsDiffuse(view.brdf)) return {};
   // The half vector's slope across is (l·n + v·n)/2 × the light's: a lobe that spreads to heights of α widens
   // by as much.
   const double width = std::min(1.0, view.cosine + 0.5 * view.alpha);
@@ -338,7 +339,7 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
                     const Cell* previous) {
   const Nodes upper = UpperNodes(view, settings.nodes, settings.nodes);
   const LobeMoments moments = Moments(UpperNodes(view, kAlbedoNodes, kAlbedoNodes));
-  const Whitening whitening = MirrorWhitening(view);
+  const Whitening whitening = LobeWhitening(view);
   const DensityStage density = FitDensity(view, upper, whitening, moments, previous, settings.leak_penalty);
   const Cell control = MakeCell(whitening, moments, density.p);
 
@@ -399,7 +400,7 @@ struct PairFrames {
 };
 
 PairFrames FramesOf(const View& view) {
-  PairFrames frames{MirrorWhitening(view), MirrorWhitening(view)};
+  PairFrames frames{LobeWhitening(view), LobeWhitening(view)};
   frames.second.width = std::sqrt(frames.first.width);
   frames.second.depth = std::sqrt(frames.first.depth);
   return frames;
@@ -535,7 +536,7 @@ PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, cons
   const bool sampled = view.brdf == Brdf::kGgx || view.brdf == Brdf::kGgxSeparable;
   const LobeMoments moments = sampled ? SampledMoments(view, kPublishedSamples)
                                       : Moments(UpperNodes(view, kAlbedoNodes, kAlbedoNodes));
-  const Whitening mirror = MirrorWhitening(view);
+  const Whitening mirror = LobeWhitening(view);
   Nodes all = UpperNodes(view, nodes, nodes);
   AppendLowerNodes(mirror, nodes, &all);
   const glm::dvec3 mean = isotropic ? glm::dvec3(0.0, 0.0, 1.0) : moments.mean;
@@ -575,7 +576,7 @@ PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, cons
 Cell FitDensityCell(const View& view, int nodes, const Cell* previous) {
   const Nodes upper = UpperNodes(view, nodes, nodes);
   const LobeMoments moments = Moments(upper);
-  const Whitening whitening = MirrorWhitening(view);
+  const Whitening whitening = LobeWhitening(view);
   return MakeCell(whitening, moments, FitDensity(view, upper, whitening, moments, previous, 0.0).p);
 }
 

@@ -22,10 +22,10 @@ struct Cell {
   Eigen::Matrix<double, 9, 1> fitted = Eigen::Matrix<double, 9, 1>::Zero();
 };
 
-// Whitening about the mirror direction: widths of the GGX lobe in the plane of incidence (2α) and across it
+// Whitening about the mirror direction, of a diffuse lobe about the normal: widths of the GGX lobe in the plane of incidence (2α) and across it
 // (2α cos θ), widened as the lobe reaches over the horizon. It only conditions the fit; no result depends on
 // its exact value.
-Whitening MirrorWhitening(const View& view);
+Whitening LobeWhitening(const View& view);
 
 // What the polygon loss compares on, drawn once and used by every cell (common random numbers keep neighbours
 // alike).

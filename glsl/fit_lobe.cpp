@@ -61,16 +61,42 @@ double LastSlope(const View& view, double cos_phi) {
     }
     case Brdf::kGgx:
     case Brdf::kGgxSeparable:
+    case Brdf::kLambert:
+    case Brdf::kDisney:
       break;
   }
   return std::numeric_limits<double>::infinity();
 }
 
+void Reserve(Nodes& nodes, std::size_t count) {
+  for (std::vector<double>* values : {&nodes.x, &nodes.y, &nodes.z, &nodes.weight, &nodes.density, &nodes.schlick}) values->reserve(count);
+}
+
+// Of a diffuse lobe, which follows no half vector: even in n·l and azimuth.
+Nodes DiffuseNodes(const View& view, int radial, int azimuthal) {
+  Nodes nodes;
+  Reserve(nodes, static_cast<std::size_t>(radial * azimuthal));
+  for (const auto& [phi_position, phi_weight] : GaussRule(azimuthal)) {
+    const double cos_phi = std::cos(glm::pi<double>() * phi_position), sin_phi = std::sin(glm::pi<double>() * phi_position);
+    for (const auto& [z, z_weight] : GaussRule(radial)) {
+      const double sine = std::sqrt((1.0 - z) * (1.0 + z));
+      const glm::dvec3 to_light(sine * cos_phi, sine * sin_phi, z);
+      nodes.x.push_back(to_light.x);
+      nodes.y.push_back(to_light.y);
+      nodes.z.push_back(z);
+      nodes.weight.push_back(glm::two_pi<double>() * z_weight * phi_weight);  // both halves of φ
+      nodes.density.push_back(LobeDensity(view, to_light));
+      nodes.schlick.push_back(dual::SchlickWeight(std::sqrt(std::max(0.5 + 0.5 * glm::dot(view.ToView(), to_light), 0.0))));
+    }
+  }
+  return nodes;
+}
+
 }  // namespace
 
 View MakeView(Brdf brdf, double roughness, double cosine) {
-  const double alpha = std::max(roughness * roughness, dual::kMinAlpha);
-  return {brdf, alpha, cosine, std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)))};
+  const double alpha = IsDiffuse(brdf) ? 1.0 : std::max(roughness * roughness, dual::kMinAlpha);
+  return {brdf, alpha, roughness, cosine, std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)))};
 }
 
 double LobeDensity(const View& view, const glm::dvec3& to_light) {
@@ -80,7 +106,7 @@ double LobeDensity(const View& view, const glm::dvec3& to_light) {
   const double tan2 = (half.x * half.x + half.y * half.y) / (half.z * half.z);
   const double v_dot_h = glm::dot(view.ToView(), half);
   return dual::GgxDensity(half.z, view.alpha) *
-         dual::BrdfOverGgx(view.brdf, view.cosine, to_light.z, v_dot_h, tan2, view.alpha) * to_light.z;
+         dual::BrdfOverGgx(view.brdf, view.cosine, to_light.z, v_dot_h, tan2, view.alpha, view.roughness) * to_light.z;
 }
 
 const std::vector<std::pair<double, double>>& GaussRule(int count) {
@@ -94,12 +120,12 @@ const std::vector<std::pair<double, double>>& GaussRule(int count) {
 }
 
 Nodes UpperNodes(const View& view, int radial, int azimuthal) {
+  if (IsDiffuse(view.brdf)) return DiffuseNodes(view, radial, azimuthal);
   const auto& across = GaussRule(radial);
   const auto& around = GaussRule(azimuthal / 2);
   const double c = view.cosine, s = view.sine, alpha = view.alpha;
   Nodes nodes;
-  const auto count = 2 * around.size() * across.size();
-  for (std::vector<double>* values : {&nodes.x, &nodes.y, &nodes.z, &nodes.weight, &nodes.density, &nodes.schlick}) values->reserve(count);
+  Reserve(nodes, 2 * around.size() * across.size());
   for (int side = 0; side < 2; ++side) {
     for (const auto& [phi_position, phi_weight] : around) {
       const double phi = glm::half_pi<double>() * (side + phi_position);
@@ -129,7 +155,7 @@ Nodes UpperNodes(const View& view, int radial, int azimuthal) {
         const double shape = 1.0 + tan2 / (alpha * alpha);
         const double density =
             (1.0 + tan2) * (1.0 + tan2) / (glm::pi<double>() * alpha * alpha * shape * shape);
-        nodes.density.push_back(density * dual::BrdfOverGgx(view.brdf, c, n_dot_l, v_dot_h, tan2, alpha) *
+        nodes.density.push_back(density * dual::BrdfOverGgx(view.brdf, c, n_dot_l, v_dot_h, tan2, alpha, view.roughness) *
                                 n_dot_l);
         nodes.schlick.push_back(dual::SchlickWeight(v_dot_h));
       }

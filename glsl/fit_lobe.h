@@ -13,7 +13,8 @@ namespace arealab::fit {
 
 struct View {
   Brdf brdf = Brdf::kGgx;
-  double alpha = 1.0;   // roughness², at least kMinAlpha of glsl/surface.glsl
+  double alpha = 1.0;      // roughness², at least kMinAlpha of glsl/surface.glsl; 1 of a diffuse BRDF
+  double roughness = 1.0;  // of a diffuse BRDF
   double cosine = 1.0;  // n·v in (0, 1]
   double sine = 0.0;
 
@@ -43,7 +44,7 @@ const std::vector<std::pair<double, double>>& GaussRule(int count);
 // in polar coordinates, tan θh = α sinh t with t cut exactly where the light reaches the horizon, or before it where a steep
 // lobe has less than e⁻³⁶ of its peak; `radial`
 // points in t, `azimuthal` in φ ∈ [0, π], half of them on each side of π/2, where the cut turns quickly at
-// grazing views.
+// grazing views. Of a diffuse lobe even in n·l and azimuth instead.
 Nodes UpperNodes(const View& view, int radial, int azimuthal);
 
 // The same nodes and their mirror images in y with single weights.

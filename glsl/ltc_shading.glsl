@@ -30,7 +30,11 @@ void RoundLightFactors(Light light, vec3 position, ShadingFrame frame, LtcCell c
 Radiance LtcRadiance(Surface surface, Light light, ShadingFrame frame, LtcCell cell, float form_factor, vec3 transformed) {
   float lobe = LtcLobe(transformed.z, form_factor, cell.terms);
   Radiance result;
+#if DIFFUSE_LAMBERT
   result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
+#else
+  result.diffuse = surface.diffuse_albedo * light.radiance * (cell.terms.x * transformed.z);  // the cell is the diffuse lobe's
+#endif
   result.specular = LtcReflectance(surface.f0, cell.terms, cell.m, frame.n_dot_v, frame.sine, transformed) * light.radiance * lobe;
   return result;
 }

@@ -15,6 +15,17 @@ vec2 LtcCoordinates(float roughness, ShadingFrame frame) {
   return TableCoordinates(roughness, LtcViewPosition(frame.n_dot_v, frame.sine));
 }
 
+#if !DIFFUSE_LAMBERT
+// The diffuse lobe: one transformed cosine about the normal, whatever "lobes" and "frame" say.
+LtcCell LookUpDiffuse(float roughness, ShadingFrame frame) {
+  vec2 uv = LtcCoordinates(roughness, frame);
+  LtcCell cell;
+  cell.terms = vec4(SampleTable(table_ltc_diffuse_terms, uv).x, 0.0, 0.0, 0.0);
+  cell.m = SampleTable(table_ltc_diffuse_matrix, uv);
+  return cell;
+}
+#endif
+
 vec4 LookUpMatrix(vec2 uv, vec4 terms, ShadingFrame frame) {
   return LtcUnturned(LtcNormalised(SampleTable(table_ltc_matrix, uv), terms), frame.n_dot_v, frame.sine);
 }

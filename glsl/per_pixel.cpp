@@ -30,7 +30,7 @@ bool SomeLack(const std::string& lobe, const Scene& scene) {
 int NeedsToAsk(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, const Scene& scene) {
   const EffectDefines defines = Defines(effects, variant.effects);
   std::string text;
-  if (variant.technique) text = Expand(library, "lighting.frag", variant, defines, Precision::kFloat, scene.brdf).text;
+  if (variant.technique) text = Expand(library, "lighting.frag", variant, defines, Precision::kFloat, scene.brdfs()).text;
   int asked = 0;
   for (const PixelNeed& need : kPixelNeeds) {
     const std::string name = need.effect, define = Effect{name, true, ""}.Define();
@@ -55,9 +55,9 @@ Variant VariantFor(Variant variant, int needs, int asked) {
   return variant;
 }
 
-ExpandedSource BranchSource(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Precision precision, Brdf brdf) {
+ExpandedSource BranchSource(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Precision precision, Brdfs brdfs) {
   const Variant without = VariantFor(variant, 0, kHorizonNeeds);
-  ExpandedSource fused = Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), precision, brdf);
+  ExpandedSource fused = Expand(library, "lighting.frag", variant, Defines(effects, variant.effects), precision, brdfs);
   std::map<std::string, std::set<std::string>> shared;  // code by name
   for (const Declaration& declaration : Declarations(Decide(fused).lines)) {
     for (const std::string& name : declaration.names) shared[name].insert(WithoutComments(declaration.text));
@@ -69,7 +69,7 @@ ExpandedSource BranchSource(const ShaderLibrary& library, const Variant& variant
   };
   // What differs, or calls what differs, gets another name.
   const std::vector<Declaration> second =
-      Declarations(Decide(Expand(library, "lighting.frag", without, Defines(effects, without.effects), precision, brdf)).lines);
+      Declarations(Decide(Expand(library, "lighting.frag", without, Defines(effects, without.effects), precision, brdfs)).lines);
   std::map<std::string, std::string> renamed{{"main", "ShadeWithoutHorizon"}};
   const auto own = [&](const Declaration& declaration) {
     const auto is_renamed = [&](const std::string& name) { return renamed.contains(name); };

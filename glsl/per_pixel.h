@@ -30,6 +30,6 @@ Variant VariantFor(Variant variant, int needs, int asked);
 
 // One program of two lighting passes: the variant's, and where its pixel's own needs allow it the same without horizons. Functions that differ
 // stand there twice, the second time under other names.
-ExpandedSource BranchSource(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Precision precision, Brdf brdf);
+ExpandedSource BranchSource(const ShaderLibrary& library, const Variant& variant, const std::vector<Effect>& effects, Precision precision, Brdfs brdfs);
 
 }  // namespace arealab

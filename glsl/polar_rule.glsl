@@ -23,6 +23,7 @@ struct LobeView {
   float sin_v;  // ≥ 0
   float cos_v;  // > 0
   float alpha;
+  float roughness;  // of a diffuse lobe, whose alpha is 1; else below 0, or nobody asks
 };
 
 // An arc of the outline: l(ψ) = axis_1 sin_1 cosψ + axis_2 sin_2 sinψ + axis_3 √((cos_1 cosψ)² + (cos_2 sinψ)²), unit, with

@@ -140,7 +140,7 @@ void Renderer::Impl::Allocate(glm::ivec2 new_size) {
 }
 
 GLuint Renderer::Impl::LoadTable(const Variant& variant, const arealab::Table& table) {
-  const std::string name = TableFile(variant, table, scene.brdf);
+  const std::string name = TableFile(variant, table, scene.brdfs());
   std::optional<std::string> bytes = library.Find(name);
   if (!bytes) {
     throw InputError(
@@ -163,8 +163,8 @@ Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision 
   }
   const EffectDefines defines = Defines(effects, variant.effects);
   const ExpandedSource source = variant.per_pixel == PerPixel::kBranch
-                                    ? BranchSource(library, variant, effects, precision, scene.brdf)
-                                    : Expand(library, "lighting.frag", variant, defines, precision, scene.brdf);
+                                    ? BranchSource(library, variant, effects, precision, scene.brdfs())
+                                    : Expand(library, "lighting.frag", variant, defines, precision, scene.brdfs());
   const ExpandedSource& vertex = variant.per_pixel == PerPixel::kTiles ? tile_points : fullscreen;
   std::unique_ptr<Program>& program = programs[vertex.text + source.text];
   if (!program) program = std::make_unique<Program>(gl, vertex, source);
@@ -173,7 +173,7 @@ Renderer::Impl::Pass Renderer::Impl::MakePass(const Variant& variant, Precision 
   pass.textured = has("EFFECT_TEXTURED");
   pass.sky_textured = has("EFFECT_SKY_TEXTURE");
   GLuint unit = kFirstTableUnit;
-  for (const arealab::Table& table : variant.technique->tables) {
+  for (const arealab::Table& table : TablesOf(variant, scene.brdfs())) {
     program->Set("table_" + table.name, static_cast<int>(unit++));
     pass.tables.push_back(LoadTable(variant, table));
   }
@@ -357,6 +357,7 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   impl_->light_count = static_cast<int>(lights.size());
   impl_->scene.name = scene.name;
   impl_->scene.brdf = scene.brdf;
+  impl_->scene.diffuse = scene.diffuse;
   impl_->scene.sky = scene.sky;
   impl_->scene.lights = scene.lights;
   impl_->scene.materials = scene.materials;

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include "glsl/effects.h"
@@ -27,15 +28,15 @@ constexpr int kHeaderOffset = 1;
 const std::vector<LightShape> kShapes(std::begin(kLightShapes), std::end(kLightShapes));
 const std::vector<std::string> kLobes{"diffuse", "specular"};
 // "ggx" and the other choices of a scene.
-std::vector<std::string> BrdfNames() {
+std::vector<std::string> BrdfNames(std::span<const Brdf> brdfs) {
   std::vector<std::string> names;
-  for (const Brdf brdf : kBrdfs) names.emplace_back(Name(brdf));
+  for (const Brdf brdf : brdfs) names.emplace_back(Name(brdf));
   return names;
 }
 constexpr std::string_view kHeldLaws[] = {"scale", "rotation", "radiance"};  // without being claimed
 // Names whose defines, folders or includes mean something else.
 const std::vector<std::string> kReservedOptions{"arealab",   "effect",   "shape",      "knob",   "table",
-                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "importance_cone", "specular_albedo", "visibility"};
+                                                "technique", "platform", "techniques", "tables", "published", "ideal", "brdf", "diffuse", "importance_cone", "specular_albedo", "visibility"};
 
 std::vector<std::string> ShapeNames(const std::vector<LightShape>& shapes) {
   std::vector<std::string> names;
@@ -71,7 +72,7 @@ class HeaderReader {
       Fail(1, fmt::format("\"{}\" cannot name a technique", name), "lower-case letters, digits and single _");
     }
     toml::table root = Parse(CutHeader(text));
-    CheckKeys(root, {"summary", "citation", "author_note", "shapes", "lobes", "brdfs", "effects", "exact",
+    CheckKeys(root, {"summary", "citation", "author_note", "shapes", "lobes", "brdfs", "diffuse_brdfs", "effects", "exact",
                      "departs", "yardstick", "option", "knob", "tables", "published", "ideal"});
     technique.summary = Line(root, "summary", 1);
     technique.citation = Line(root, "citation", 1);
@@ -228,7 +229,8 @@ class HeaderReader {
     const std::vector<std::string> lobes = NeededList(root, "lobes", kLobes);
     technique.diffuse = std::find(lobes.begin(), lobes.end(), "diffuse") != lobes.end();
     technique.specular = std::find(lobes.begin(), lobes.end(), "specular") != lobes.end();
-    technique.brdfs = NeededList(root, "brdfs", BrdfNames());
+    technique.brdfs = NeededList(root, "brdfs", BrdfNames(kBrdfs));
+    if (root.contains("diffuse_brdfs")) technique.diffuse_brdfs = NeededList(root, "diffuse_brdfs", BrdfNames(kDiffuseBrdfs));
     technique.effects = NameList(root, "effects", EffectNames());
     std::vector<std::string> claimable = Laws();
     std::erase_if(claimable, [](const std::string& law) { return std::ranges::count(kHeldLaws, law) > 0; });
@@ -324,6 +326,10 @@ class HeaderReader {
             CheckNeeded(choice, name, needed, technique.brdfs, line);
             continue;
           }
+          if (name == "diffuse") {
+            CheckNeeded(choice, name, needed, technique.diffuse_brdfs, line);
+            continue;
+          }
           if (name == "shape") {
             CheckNeeded(choice, name, needed, ShapeNames(technique.shapes), line);
             continue;
@@ -391,6 +397,8 @@ class HeaderReader {
       known = ShapeNames(technique.shapes);
     } else if (what == "brdf") {
       known = technique.brdfs;
+    } else if (what == "diffuse") {
+      known = technique.diffuse_brdfs;
     } else {
       for (const Choice& choice : FindOption(technique, what, LineOf(node)).choices) known.push_back(choice.name);
     }
@@ -454,7 +462,7 @@ class HeaderReader {
     }
   }
 
-  // Every "{…}" in a table's file name is an option, or the scene's BRDF.
+  // Every "{…}" in a table's file name is an option, or one of the scene's BRDFs.
   void CheckPlaceholders(std::string_view file, const Technique& technique, int line) const {
     if (file.empty() || file.find('/') != std::string_view::npos) {
       Fail(line, fmt::format("\"{}\" is no file in glsl/tables/", file),
@@ -464,7 +472,7 @@ class HeaderReader {
       const auto close = file.find('}', open);
       if (close == std::string_view::npos) Fail(line, fmt::format("\"{}\" lacks a }}", file), "{option}");
       const std::string_view name = file.substr(open + 1, close - open - 1);
-      if (name != "brdf") FindOption(technique, name, line);
+      if (name != "brdf" && name != "diffuse") FindOption(technique, name, line);
     }
   }
 

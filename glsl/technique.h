@@ -14,7 +14,7 @@ namespace arealab {
 struct Choice {
   std::string name;                               // "arc"
   std::string summary;                            // one line
-  // Other options and the choices of theirs that it goes with; under "brdf" the one BRDF of a scene that it does.
+  // Other options and the choices of theirs that it goes with; under "brdf" and "diffuse" the one BRDF of a scene that it does.
   std::map<std::string, std::string> needs = {};
 };
 
@@ -35,7 +35,7 @@ struct Knob {
 
 // A texture that the technique samples: `uniform sampler2D table_NAME`, loaded from glsl/tables/FILE, in
 // which
-// "{option}" stands for that option's choice and "{brdf}" for the scene's BRDF.
+// "{option}" stands for that option's choice, "{brdf}" and "{diffuse}" for the scene's BRDFs.
 struct Table {
   std::string name;
   std::string file;
@@ -45,7 +45,7 @@ struct Table {
 struct Departure {
   std::string law;   // one of Laws()
   std::string lobe;  // "diffuse", "specular"; empty: both
-  // What it covers: option → choices; under "shape" and "brdf" of the light and the scene; what is not named is covered.
+  // What it covers: option → choices; under "shape", "brdf" and "diffuse" of the light and the scene; what is not named is covered.
   std::map<std::string, std::vector<std::string>> when;
   double error = 0.0;  // relative RMSE over the law's own cases (tests/compare/laws_test.cpp), the largest of what it covers
   std::string why;     // one line
@@ -61,6 +61,7 @@ struct Technique {
   bool specular = true;
   bool yardstick = false;  // what a user would otherwise do: compared only where asked for
   std::vector<std::string> brdfs;    // "ggx"
+  std::vector<std::string> diffuse_brdfs{"lambert"};  // "lambert", which every technique knows
   std::vector<std::string> effects;  // EFFECT_* it takes: "two_sided", "fresnel", …
   std::vector<std::string> exact;  // the laws it keeps: "lambert_rectangle", "point_limit", …; departures excepted
   std::vector<Departure> departures;

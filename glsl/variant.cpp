@@ -280,10 +280,11 @@ std::vector<Variant> AllVariants(const std::vector<Technique>& techniques) {
   return variants;
 }
 
-std::string TableFile(const Variant& variant, const Table& table, Brdf brdf) {
+std::string TableFile(const Variant& variant, const Table& table, Brdfs brdfs) {
   std::string file = "tables/" + table.file;
   std::map<std::string, std::string> chosen = variant.options;
-  chosen["brdf"] = Name(brdf);
+  chosen["brdf"] = Name(brdfs.specular);
+  chosen["diffuse"] = Name(brdfs.diffuse);
   for (const auto& [option, choice] : chosen) {
     const std::string placeholder = "{" + option + "}";
     for (auto at = file.find(placeholder); at != std::string::npos; at = file.find(placeholder)) {
@@ -293,11 +294,17 @@ std::string TableFile(const Variant& variant, const Table& table, Brdf brdf) {
   return file;
 }
 
+std::vector<Table> TablesOf(const Variant& variant, Brdfs brdfs) {
+  std::vector<Table> tables = variant.technique->tables;
+  if (brdfs.diffuse == Brdf::kLambert) std::erase_if(tables, [](const Table& table) { return table.file.find("{diffuse}") != std::string::npos; });
+  return tables;
+}
+
 std::optional<std::string> WhyInconsistent(const Variant& variant) {
   for (const Option& option : variant.technique->options) {
     const Choice* choice = FindByName(option.choices, variant.options.at(option.name));
     for (const auto& [other, needed] : choice->needs) {
-      if (other == "brdf" || other == "shape") continue;  // a scene's matter
+      if (other == "brdf" || other == "diffuse" || other == "shape") continue;  // a scene's matter
       if (const std::string& chosen = variant.options.at(other); chosen != needed) {
         return fmt::format("{}={} does not go with {}={}; expected +{}={}", option.name, choice->name, other,
                            chosen, other, needed);
@@ -312,17 +319,18 @@ namespace {
 std::optional<std::string> WhyUnsupported(const Variant& variant, const Scene& scene,
                                           const std::function<bool(const char*)>& calls_for) {
   const std::string brdf = Name(scene.brdf);
-  const std::vector<std::string>& brdfs = variant.technique->brdfs;
-  if (std::find(brdfs.begin(), brdfs.end(), brdf) == brdfs.end()) {
-    return fmt::format("{} does not know the BRDF {}, which is the scene's; it knows {}", variant.technique->name, brdf,
-                       fmt::join(brdfs, ", "));
-  }
-  for (const auto& [choice, needed] : NeedsOf(variant, "brdf")) {
-    if (needed != brdf) {
-      return fmt::format("{} with {} goes with the BRDF {} alone; the scene's is {}", variant.technique->name, choice,
-                         needed, brdf);
+  const auto lacks = [&](const char* kind, const char* called, const std::string& name, const std::vector<std::string>& known) -> std::optional<std::string> {
+    if (std::ranges::find(known, name) == known.end()) {
+      return fmt::format("{} does not know the {} {}, which is the scene's; it knows {}", variant.technique->name, called, name, fmt::join(known, ", "));
     }
-  }
+    for (const auto& [choice, needed] : NeedsOf(variant, kind)) {
+      if (needed != name) return fmt::format("{} with {} goes with the {} {} alone; the scene's is {}", variant.technique->name, choice, called, needed, name);
+    }
+    return std::nullopt;
+  };
+  if (const auto why = lacks("brdf", "BRDF", brdf, variant.technique->brdfs)) return why;
+  if (const auto why = lacks("diffuse", "diffuse BRDF", Name(scene.diffuse), variant.technique->diffuse_brdfs)) return why;
+  if (const auto why = WhyNotDiffuse(scene)) return why;
   const std::vector<LightShape>& shapes = variant.technique->shapes;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];

@@ -52,8 +52,11 @@ std::vector<Variant> DefaultVariants(const std::vector<Technique>& techniques);
 std::vector<Variant> AllVariants(const std::vector<Technique>& techniques);
 
 // The library's name of the file that a technique's table is read from, "tables/ltc_ggx_polygon.exr": its placeholders
-// filled with the variant's choices and the scene's BRDF.
-std::string TableFile(const Variant& variant, const Table& table, Brdf brdf);
+// filled with the variant's choices and the scene's BRDFs.
+std::string TableFile(const Variant& variant, const Table& table, Brdfs brdfs);
+
+// The technique's tables that are read there: those of {diffuse} are not where it is Lambert's.
+std::vector<Table> TablesOf(const Variant& variant, Brdfs brdfs);
 
 // A sentence that says which of the variant's choices does not go with another, or nothing.
 std::optional<std::string> WhyInconsistent(const Variant& variant);

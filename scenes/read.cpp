@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <sstream>
 #include <string_view>
 
@@ -269,15 +270,13 @@ class SceneReader {
                  fmt::format("{}; expected valid TOML", error.description()));
     }
     const Fields root(file_, root_table, "the scene");
-    root.Allow({"units", "exposure", "brdf", "aperture", "sky", "camera", "material", "surface", "light"});
+    root.Allow({"units", "exposure", "brdf", "diffuse", "aperture", "sky", "camera", "material", "surface", "light"});
     scene_.units = root.Word("units", {"radiometric", "photometric"}, "radiometric") == "photometric"
                        ? Units::kPhotometric
                        : Units::kRadiometric;
     scene_.exposure = root.Number("exposure", kExposure, 0.0);
-    std::vector<std::string> brdfs;
-    for (const Brdf brdf : kBrdfs) brdfs.emplace_back(Name(brdf));
-    const std::string brdf = root.Word("brdf", brdfs, Name(Brdf::kGgx));
-    scene_.brdf = kBrdfs[std::find(brdfs.begin(), brdfs.end(), brdf) - brdfs.begin()];
+    scene_.brdf = OneOf(root, "brdf", kBrdfs);
+    scene_.diffuse = OneOf(root, "diffuse", kDiffuseBrdfs);
     ReadAperture(root);
     ReadSky(root);
     ReadCamera(root);
@@ -294,10 +293,19 @@ class SceneReader {
       }
       ReadLight(fields);
     }
+    if (const auto why = WhyNotDiffuse(scene_)) root.Fail(*root.Find("diffuse"), fmt::format("{}; expected \"{}\"", *why, Name(Brdf::kLambert)));
     return std::move(scene_);
   }
 
  private:
+  // One of `brdfs` by its name, the first where the scene names none.
+  static Brdf OneOf(const Fields& root, std::string_view key, std::span<const Brdf> brdfs) {
+    std::vector<std::string> names;
+    for (const Brdf brdf : brdfs) names.emplace_back(Name(brdf));
+    const std::string name = root.Word(key, names, names.front());
+    return brdfs[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+  }
+
   // The tables of an array of tables, each titled "[[key]] 'name'" or "[[key]]".
   std::vector<Fields> Tables(const Fields& root, const std::string& key) const {
     std::vector<Fields> tables;

@@ -66,8 +66,19 @@ const char* Name(Brdf brdf) {
       return "ward";
     case Brdf::kPhong:
       return "phong";
+    case Brdf::kLambert:
+      return "lambert";
+    case Brdf::kDisney:
+      return "disney";
   }
   return "";
+}
+
+std::optional<std::string> WhyNotDiffuse(const Scene& scene) {
+  if (scene.diffuse == Brdf::kLambert) return std::nullopt;
+  const bool textured = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.texture != nullptr; });
+  if (!scene.sky && !textured) return std::nullopt;
+  return fmt::format("the diffuse BRDF {} reflects no {} here", Name(scene.diffuse), scene.sky ? "sky" : "light that shows a texture");
 }
 
 double Luminance(const glm::dvec3& color) {

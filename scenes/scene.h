@@ -27,13 +27,26 @@ constexpr bool IsFlat(LightShape shape) { return shape != LightShape::kSphere &&
 
 constexpr std::size_t kMostCorners = 8;  // of a polygon
 
-// The specular BRDF of a scene's surfaces, for Fresnel 1; its formulas and sources: glsl/brdf/.
-enum class Brdf { kGgx, kGgxSeparable, kBeckmann, kBlinnPhong, kWard, kPhong };
+// What a scene's surfaces reflect by: a specular BRDF, for Fresnel 1 (formulas and sources: glsl/brdf/), and a diffuse one, for albedo 1
+// (glsl/diffuse/).
+enum class Brdf { kGgx, kGgxSeparable, kBeckmann, kBlinnPhong, kWard, kPhong, kLambert, kDisney };
 constexpr Brdf kBrdfs[] = {Brdf::kGgx,        Brdf::kGgxSeparable, Brdf::kBeckmann,
                            Brdf::kBlinnPhong, Brdf::kWard,         Brdf::kPhong};
+constexpr Brdf kDiffuseBrdfs[] = {Brdf::kLambert, Brdf::kDisney};
 
-// "ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong": as in scene files, technique headers and file names.
+// "ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"; "lambert", "disney": as in scene files, technique headers and
+// file names.
 const char* Name(Brdf brdf);
+
+constexpr bool IsDiffuse(Brdf brdf) { return brdf == Brdf::kLambert || brdf == Brdf::kDisney; }
+
+// The two of a scene.
+struct Brdfs {
+  Brdfs(Brdf its_specular = Brdf::kGgx, Brdf its_diffuse = Brdf::kLambert) : specular(its_specular), diffuse(its_diffuse) {}  // NOLINT: one is the two with the default
+  bool operator==(const Brdfs&) const = default;
+
+  Brdf specular, diffuse;
+};
 
 // Relative luminance of linear sRGB: a quantity in W per channel keeps its unit, Rec. 709 weights.
 double Luminance(const glm::dvec3& color);
@@ -144,6 +157,7 @@ struct Scene {
   std::filesystem::path file;
   Units units = Units::kRadiometric;
   Brdf brdf = Brdf::kGgx;
+  Brdf diffuse = Brdf::kLambert;
   double exposure = 0.0;  // EV: pictures show radiance × 2^exposure
   Camera camera;
   std::vector<Material> materials;
@@ -151,7 +165,12 @@ struct Scene {
   std::vector<Light> lights;
   std::optional<ApertureSettings> aperture;  // where the scene calls for visibility
   std::optional<Sky> sky;
+
+  Brdfs brdfs() const { return {brdf, diffuse}; }
 };
+
+// What of the scene its diffuse BRDF has no truth for, in a sentence; nothing where it has.
+std::optional<std::string> WhyNotDiffuse(const Scene& scene);
 
 // Reads and checks a scene file. Throws InputError ("file:line: what; expected what").
 Scene LoadScene(const std::filesystem::path& file);

@@ -19,7 +19,7 @@ constexpr std::size_t kRow = 16;
 constexpr std::size_t kGrids[] = {8, 4, 2, 1};  // px between the pixels of a pass
 
 bool SameLook(const Scene& a, const Scene& b) {
-  return a.brdf == b.brdf && Same(a.camera, b.camera) && Same(Edits{a.lights, a.materials, 0.0, a.sky}, Edits{b.lights, b.materials, 0.0, b.sky});
+  return a.brdfs() == b.brdfs() && Same(a.camera, b.camera) && Same(Edits{a.lights, a.materials, 0.0, a.sky}, Edits{b.lights, b.materials, 0.0, b.sky});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ author_note = "our reading of Drobot: for rectangle and disk his eq. 1.15 with t
 shapes = ["rectangle", "disk", "sphere"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
+diffuse_brdfs = ["lambert", "disney"]
 effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["lambert_sphere", "point_limit", "mirror_limit"]
 
@@ -96,6 +97,7 @@ why = "each half has its own point and overlap"
 ---*/
 #include "brdf.glsl"
 #include "bisector"
+#include "diffuse"
 #include "elongated_footprint.glsl"
 #include "importance_cone.glsl"
 #include "light_texture.glsl"
@@ -118,7 +120,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if EFFECT_SPHERE
   if (light.shape == SHAPE_SPHERE) {
     Cap sphere = SphereCap(light.center - surface.position, light.half_size.x, surface.normal);
-    result.diffuse = surface.diffuse_albedo * SphereFormFactor(dot(surface.normal, sphere.axis), sphere.versine);
+    result.diffuse = DiffuseAlbedo(surface, to_view, sphere.axis) * SphereFormFactor(dot(surface.normal, sphere.axis), sphere.versine);
 
     float cone_radius = AngleFromVersine(cone_versine);
     float sphere_radius = AngleFromVersine(sphere.versine);
@@ -207,7 +209,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #if EXCESS_CUT
     form_factor = min(form_factor, 1.0);
 #endif
-    result.diffuse = surface.diffuse_albedo * form_factor;
+    result.diffuse = DiffuseAlbedo(local, view, to_point * inverse_distance) * form_factor;
 
 #if EFFECT_TEXTURED
     float blur = BlurLevel(dot(to_point, to_point) / light.area);

@@ -1,10 +1,11 @@
 /*---
 summary = "The point of a sphere or tube nearest to the mirror ray stands for it in the specular lobe, dimmed for the widening; diffuse as from a point"
 citation = "Karis 2013"
-author_note = "Real Shading in Unreal Engine 4, 'Area Lights': representative point (eq. 11), normalisation (eq. 14), the diffuse lobe as a point light's, which above the horizon is a sphere's; in the published form his windowed fall-off (eq. 9). For eq. 14 the notes point back to eq. 10, whose radius / (3 distance) is widening=third; his engine's code has radius / (2 distance), which alone keeps a mirror's radiance at normal incidence, and is taken for his form. Neither keeps it elsewhere: a mirror shows the sphere's radiance over n.v (third: 9/4 of that), which his engine's later form mends. The BRDF is the scene's, not his (Schlick's masking with a remapped roughness). Tubes: the line's irradiance as from a light that is as bright from all sides (eq. 16, in the published form with its square centimetres, in the other without), hence a tube's flux over 4π and not less along its axis, as a wall has it; the line's point by shortest distance to the mirror ray (eq. 19), then the sphere about it; eq. 20 does not say what alpha' is: length / (2 distance), as in his engine's code, or / (3 distance). He has spheres and tubes: no rectangle, no disk. The engine later changed both the normalisation and the horizon"
+author_note = "Real Shading in Unreal Engine 4, 'Area Lights': representative point (eq. 11), normalisation (eq. 14), the diffuse lobe as a point light's, which above the horizon is a sphere's; in the published form his windowed fall-off (eq. 9). For eq. 14 the notes point back to eq. 10, whose radius / (3 distance) is widening=third; his engine's code has radius / (2 distance), which alone keeps a mirror's radiance at normal incidence, and is taken for his form. Neither keeps it elsewhere: a mirror shows the sphere's radiance over n.v (third: 9/4 of that), which his engine's later form mends. The BRDF is the scene's (a diffuse one too, taken towards the centre), not his (Schlick's masking with a remapped roughness). Tubes: the line's irradiance as from a light that is as bright from all sides (eq. 16, in the published form with its square centimetres, in the other without), hence a tube's flux over 4π and not less along its axis, as a wall has it; the line's point by shortest distance to the mirror ray (eq. 19), then the sphere about it; eq. 20 does not say what alpha' is: length / (2 distance), as in his engine's code, or / (3 distance). He has spheres and tubes: no rectangle, no disk. The engine later changed both the normalisation and the horizon"
 shapes = ["sphere", "tube"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx"]
+diffuse_brdfs = ["lambert", "disney"]
 effects = ["fresnel", "many_lights"]
 exact = ["point_limit"]
 
@@ -66,6 +67,7 @@ error = 3.0
 why = "a mirror shows the radiance over n.v, with widening=third 9/4 of that"
 ---*/
 #include "specular_lobe.glsl"
+#include "diffuse"
 #include "lit.glsl"
 
 #if WIDENING_HALF
@@ -121,7 +123,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #else
   vec3 irradiance = light.radiance * (light.area * falloff * n_dot_l);
 #endif
-  result.diffuse = surface.diffuse_albedo * irradiance / kPi;
+  result.diffuse = DiffuseAlbedo(surface, to_view, to_center * inverse_distance) * irradiance / kPi;
 
   vec3 mirror = surface.normal * (2.0 * dot(surface.normal, to_view)) - to_view;
 #if EFFECT_TUBE

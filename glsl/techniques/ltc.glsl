@@ -5,6 +5,7 @@ author_note = "Published: 16-case clip, rational edge, disks by a cubic and a pr
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse", "tube"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
+diffuse_brdfs = ["lambert", "disney"]
 effects = ["two_sided", "fresnel", "textured"]
 exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_polygon", "lambert_ellipse", "point_limit", "mirror_limit", "additive"]
 
@@ -78,8 +79,8 @@ name = "norm"
 summary = "What the stored matrix is divided by"
 choices = [
   ["middle", "its middle element: four terms"],
-  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal", brdf = "ggx" }],
-  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["none", "nothing: five terms, the smoothest about the normal", { fit = "l3", frame = "normal", brdf = "ggx", diffuse = "lambert" }],
+  ["last", "its last element: four terms that band at grazing angles", { fit = "l3", frame = "normal", brdf = "ggx", diffuse = "lambert" }],
 ]
 
 [[option]]
@@ -87,8 +88,8 @@ name = "axis"
 summary = "View angles of the tables' rows"
 choices = [
   ["sqrt", "over √(1 − cos θ)"],
-  ["cos", "over cos θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
-  ["theta", "over θ", { fit = "l3", frame = "normal", brdf = "ggx" }],
+  ["cos", "over cos θ", { fit = "l3", frame = "normal", brdf = "ggx", diffuse = "lambert" }],
+  ["theta", "over θ", { fit = "l3", frame = "normal", brdf = "ggx", diffuse = "lambert" }],
 ]
 
 [[option]]
@@ -96,7 +97,7 @@ name = "horizon"
 summary = "Which horizon clips the specular lobe"
 choices = [
   ["lobe", "the transformed lobe's own"],
-  ["true", "the surface's too, both streamed, with tables fitted for it", { fit = "polygon", lobes = "one", frame = "mirror", brdf = "ggx", shape = "rectangle" }],
+  ["true", "the surface's too, both streamed, with tables fitted for it", { fit = "polygon", lobes = "one", frame = "mirror", brdf = "ggx", diffuse = "lambert", shape = "rectangle" }],
 ]
 
 [[option]]
@@ -126,6 +127,8 @@ choices = [
 [tables]
 ltc_matrix = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{frame}_{norm}_{axis}.exr"
 ltc_terms = "ltc_{brdf}_{fit}_{lobes}_{horizon}_{axis}_terms.exr"
+ltc_diffuse_matrix = "ltc_{diffuse}_diffuse_{fit}_one_lobe_normal_middle_sqrt.exr"
+ltc_diffuse_terms = "ltc_{diffuse}_diffuse_{fit}_one_lobe_sqrt_terms.exr"
 sphere = "sphere.exr"
 
 [published]
@@ -178,6 +181,13 @@ law = "lambert_ellipse"
 when = { disk = "proxy" }
 error = 0.026
 why = "a proxy sphere where the horizon crosses the ellipse"
+
+[[departs]]
+law = "point_limit"
+lobe = "diffuse"
+when = { diffuse = "disney" }
+error = 0.012
+why = "the fitted lobe"
 
 [[departs]]
 law = "point_limit"

@@ -5,6 +5,7 @@ author_note = "'Adding Area Lights': the fake clipping both ways round, rho/pi (
 shapes = ["rectangle"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ward"]
+diffuse_brdfs = ["lambert", "disney"]
 effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["point_limit", "mirror_limit"]
 
@@ -72,6 +73,7 @@ error = 0.24
 why = "each half fades by itself at its border"
 ---*/
 #include "brdf.glsl"
+#include "diffuse"
 #include "edge/mirrored.glsl"
 #include "segment"
 #include "fake_clip.glsl"
@@ -131,7 +133,9 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
   vec3 average = mean.f * inversesqrt(max(dot(mean.f, mean.f), 1e-30));
   float form_factor = clamp(mean.height, 0.0, 1.0);
 #endif
-  result.diffuse = surface.diffuse_albedo * light.radiance * form_factor;
+  Surface local = surface;
+  local.normal = normal;
+  result.diffuse = DiffuseAlbedo(local, view, average) * light.radiance * form_factor;
 #if EFFECT_TEXTURED
   vec4 texel = MipTexel(light, center, half_size);
 #if ALPHA_DIFFUSE

@@ -5,6 +5,7 @@ author_note = "Nobody's published form: what a user would otherwise do. Half of 
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse", "tube"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
+diffuse_brdfs = ["lambert", "disney"]
 yardstick = true
 effects = ["two_sided", "fresnel", "many_lights", "textured"]
 
@@ -46,6 +47,8 @@ law = "rotation"
 error = 0.43
 why = "noise: a sphere is sampled in a frame that does not turn with the scene"
 ---*/
+#include "brdf.glsl"
+#include "diffuse"
 #include "ggx_sampling.glsl"
 #include "light_sampling.glsl"
 #include "light_texture.glsl"
@@ -245,7 +248,7 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #else
       float weight = 2.0 / (light_density + lobe_density);
 #endif
-      result.diffuse += surface.diffuse_albedo * (weight * n_dot_l / kPi);
+      result.diffuse += DiffuseAlbedo(surface, to_view, to_light) * (weight * n_dot_l / kPi);
       result.specular += SpecularLobe(surface, to_view, to_light) * weight;
     }
   }

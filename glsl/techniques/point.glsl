@@ -5,6 +5,7 @@ author_note = "published and default form are the same: there is one. Of a textu
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse", "tube"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
+diffuse_brdfs = ["lambert", "disney"]
 effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["point_limit"]
 

@@ -5,6 +5,7 @@ author_note = "Ours: the rule of the ground truth at a fixed number of nodes, a 
 shapes = ["rectangle", "disk", "sphere", "polygon", "ellipse", "tube"]
 lobes = ["diffuse", "specular"]
 brdfs = ["ggx", "ggx_separable", "beckmann", "blinn_phong", "ward", "phong"]
+diffuse_brdfs = ["lambert", "disney"]
 effects = ["two_sided", "fresnel", "many_lights", "textured"]
 exact = ["lambert_rectangle", "lambert_disk", "lambert_sphere", "lambert_tube", "specular_rectangle", "specular_disk", "specular_sphere", "specular_tube", "point_limit", "mirror_limit", "additive"]
 
@@ -56,6 +57,7 @@ why = "too few nodes for a steep tail"
 #include "gauss_nodes.glsl"
 #include "outline.glsl"
 #include "brdf"
+#include "diffuse"
 #include "textured_rectangle.glsl"
 
 // Half the nodes do where a ray's y or a panel's u is shorter, and all of them up to kLongestPart: Gauss's error falls with the
@@ -125,6 +127,14 @@ vec3 NearestOnArc(Arc arc, LobeView view, vec2 to, out vec2 nearest) {
   return vec3(t, offset, speed2);
 }
 
+// The lobe's BRDF over GgxDensity.
+float LobeOverGgx(LobeView view, SlopeLight light, float slope2) {
+#if !DIFFUSE_LAMBERT
+  if (view.roughness >= 0.0) return DiffuseOverLambert(view.cos_v, light.n_dot_l, light.v_dot_h * light.v_dot_h, view.roughness);
+#endif
+  return BrdfOverGgx(view.cos_v, light.n_dot_l, light.v_dot_h, slope2, view.alpha);
+}
+
 // ∫ r dr along a ray of the lobe over α²/π: from `origin`, r = origin + size·p(y), y up to `reach`.
 vec2 RayIntegral(LobeView view, vec2 center, vec2 direction, float origin, float size, float reach) {
   vec2 sum = vec2(0.0);
@@ -141,7 +151,7 @@ vec2 RayIntegral(LobeView view, vec2 center, vec2 direction, float origin, float
     float slope2 = max(center2 + r * (2.0 * along + r), 0.0);
     float tail = alpha2 + slope2;
     SlopeLight light = LightAtSlope(view, center.x + r * direction.x, slope2);
-    sum += LobeWeights(light, BrdfOverGgx(view.cos_v, light.n_dot_l, light.v_dot_h, slope2, view.alpha)) * (kRayNodes[i].y * derivative * (r / tail) / tail);
+    sum += LobeWeights(light, LobeOverGgx(view, light, slope2)) * (kRayNodes[i].y * derivative * (r / tail) / tail);
   }
   return sum * (reach * size);
 }
@@ -371,8 +381,20 @@ Radiance ShadeLight(Surface surface, Light light, vec3 to_view) {
 #endif
   }
   Radiance result;
+#if DIFFUSE_LAMBERT
   result.diffuse = surface.diffuse_albedo * light.radiance * clamp(outline.form_factor, 0.0, 1.0);
   vec2 specular = SpecularIntegrals(outline, view);
+#else
+  // Both lobes in one loop, so that the rule's text stands once in the compiled shader.
+  result.diffuse = vec3(0.0);
+  vec2 specular = vec2(0.0);
+  for (int lobe = 1 - EFFECT_DIFFUSE; lobe < 1 + EFFECT_SPECULAR; ++lobe) {
+    view.alpha = lobe == 0 ? 1.0 : surface.alpha;
+    view.roughness = lobe == 0 ? surface.roughness : -1.0;
+    specular = SpecularIntegrals(outline, view);
+    if (lobe == 0) result.diffuse = surface.diffuse_albedo * light.radiance * specular.x;
+  }
+#endif
 #if EFFECT_FRESNEL
   result.specular = light.radiance * (surface.f0 * (specular.x - specular.y) + specular.y);
 #else

@@ -26,6 +26,24 @@ struct Case {
   double outliers, rmse;
 };
 
+// A diffuse lobe by the rule that else has the specular one.
+TEST_F(ReferenceTechnique, DisneysDiffuseLobeIsTheTruths) {
+  const Brdfs brdfs(Brdf::kGgx, Brdf::kDisney);
+  PointRandom random(12);
+  std::vector<PointCase> cases;
+  std::vector<Shaded> truth;
+  for (int i = 0; i < 600; ++i) {
+    cases.push_back(RandomPoint(random, i % 2 == 0 ? LightShape::kRectangle : LightShape::kSphere));
+    truth.push_back({cases.back().Truth(1e-6, brdfs).form_factor, 0.0});
+  }
+  PointOptions options;
+  options.brdfs = brdfs;
+  const std::vector<Shaded> shaded = points_->Shade(points_->Variants("reference").front(), cases, options);
+  EXPECT_LT(RelativeRmse(shaded, truth, &Shaded::diffuse), 1e-4);
+  // It is no Lambertian form factor.
+  EXPECT_GT(RelativeRmse(points_->Shade("reference", cases), truth, &Shaded::diffuse), 0.02);
+}
+
 class ReferenceAgainstTruth : public ReferenceTechnique, public testing::WithParamInterface<Case> {};
 
 TEST_P(ReferenceAgainstTruth, AgreesWithinItsStatedError) {

@@ -14,10 +14,10 @@ inline std::vector<PointCase> RandomPoints(unsigned seed, LightShape shape, int 
   return cases;
 }
 
-inline std::vector<Shaded> TruthOf(const std::vector<PointCase>& cases, double tolerance = 1e-3, Brdf brdf = Brdf::kGgx) {
+inline std::vector<Shaded> TruthOf(const std::vector<PointCase>& cases, double tolerance = 1e-3, Brdfs brdfs = {}) {
   std::vector<Shaded> truth;
   for (const PointCase& c : cases) {
-    const LightIntegrals integrals = c.Truth(tolerance, brdf);
+    const LightIntegrals integrals = c.Truth(tolerance, brdfs);
     truth.push_back({integrals.form_factor,
                      c.f0 * (integrals.specular - integrals.specular_grazing) + integrals.specular_grazing});
   }

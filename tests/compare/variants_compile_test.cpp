@@ -55,14 +55,20 @@ TEST_P(Variants, EverySupportedOneCompiles) {
     for (const Scene& scene : scenes) {
       if (is_form && !WhyUnsupported(variant, scene)) effect_sets.insert(Defines(SceneEffects(scene)));
     }
-    // Nor do they look at the BRDF: the other BRDFs with the two forms.
+    // Nor do they look at the BRDFs: the others with the two forms.
+    std::vector<Brdfs> others;
     for (const Brdf brdf : kBrdfs) {
-      const auto& brdfs = variant.technique->brdfs;
-      if (brdf == Brdf::kGgx || !is_form || std::count(brdfs.begin(), brdfs.end(), Name(brdf)) == 0) continue;
-      SCOPED_TRACE(variant.Name() + " with " + Name(brdf));
+      if (brdf != Brdf::kGgx && std::ranges::count(variant.technique->brdfs, Name(brdf)) > 0) others.emplace_back(brdf);
+    }
+    for (const Brdf brdf : kDiffuseBrdfs) {
+      if (brdf != Brdf::kLambert && std::ranges::count(variant.technique->diffuse_brdfs, Name(brdf)) > 0) others.emplace_back(Brdf::kGgx, brdf);
+    }
+    for (const Brdfs& brdfs : others) {
+      if (!is_form) break;
+      SCOPED_TRACE(fmt::format("{} with {} and {}", variant.Name(), Name(brdfs.specular), Name(brdfs.diffuse)));
       try {
         const Program program(context->gl(), fullscreen,
-                              Expand(library, "lighting.frag", variant, AllOn(*variant.technique), GetParam(), brdf));
+                              Expand(library, "lighting.frag", variant, AllOn(*variant.technique), GetParam(), brdfs));
       } catch (const InputError& error) {
         ADD_FAILURE() << error.what();
       }

@@ -174,6 +174,37 @@ TEST(BrdfChoices, AlbedoOfASharpLobe) {
   }
 }
 
+// Burley's own form and what it says of it: symmetric, halved twice at grazing angles where smooth, up to 6.25 times Lambert's back towards
+// a grazing light where rough, and at incidence along the normal Lambert's but for a light that grazes.
+TEST(BrdfChoices, DisneysDiffuseIsThePublishedForm) {
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 1000; ++i) {
+    const auto direction = [&] {
+      const double z = uniform(engine), phi = 2.0 * kPi * uniform(engine), s = std::sqrt(1.0 - z * z);
+      return dvec3(s * std::cos(phi), s * std::sin(phi), z);
+    };
+    const dvec3 v = direction(), l = direction();
+    const double roughness = uniform(engine), cos_d = glm::dot(l, glm::normalize(v + l)), f_d90 = 0.5 + 2.0 * roughness * cos_d * cos_d;
+    const double expected = (1.0 + (f_d90 - 1.0) * std::pow(1.0 - l.z, 5)) * (1.0 + (f_d90 - 1.0) * std::pow(1.0 - v.z, 5));
+    const auto over_lambert = [&](Brdf brdf, double cos_v, double cos_l) {
+      return dual::GgxDensity(0.5, 1.0) * kPi * dual::BrdfOverGgx(brdf, cos_v, cos_l, cos_d, 1.0, 1.0, roughness);
+    };
+    EXPECT_NEAR(over_lambert(Brdf::kDisney, v.z, l.z), expected, 1e-13);
+    EXPECT_NEAR(over_lambert(Brdf::kDisney, l.z, v.z), expected, 1e-13);
+    EXPECT_NEAR(over_lambert(Brdf::kLambert, v.z, l.z), 1.0, 1e-14);
+    dual::Surface surface;
+    surface.normal = dvec3(0.0, 0.0, 1.0);
+    surface.roughness = roughness;
+    surface.diffuse_albedo = dvec3(0.5);
+    EXPECT_NEAR(dual::disney::DiffuseAlbedo(surface, v, l).x, 0.5 * expected, 1e-13);
+    EXPECT_EQ(dual::lambert::DiffuseAlbedo(surface, v, l).x, 0.5);
+  }
+  EXPECT_NEAR(dual::disney::DiffuseOverLambert(0.0, 0.0, 1.0, 0.0), 0.25, 1e-15);
+  EXPECT_NEAR(dual::disney::DiffuseOverLambert(0.0, 0.0, 1.0, 1.0), 6.25, 1e-15);
+  EXPECT_NEAR(dual::disney::DiffuseOverLambert(1.0, 1.0, 1.0, 1.0), 1.0, 1e-15);
+}
+
 TEST(BrdfChoices, Log1pKeepsItsDigits) {
   for (const double x : {-0.9, -0.3, -0.1, -1e-3, -1e-12, 1e-15, 1e-6, 0.01, 0.12, 0.13, 2.0, 1e9})
     EXPECT_NEAR(dual::Log1p(x), std::log1p(x), 3e-15 * std::abs(std::log1p(x)));

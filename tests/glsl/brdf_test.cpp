@@ -95,7 +95,7 @@ TEST(Brdf, SchlickRunsFromNothingToAll) {
 TEST(PolarRule, LobeIsTheBrdfInSlopes) {
   for (double cos_v : {0.9, 0.2}) {
     double alpha = 0.3, sin_v = std::sqrt(1.0 - cos_v * cos_v);
-    dual::LobeView view{sin_v, cos_v, alpha};
+    dual::LobeView view{sin_v, cos_v, alpha, -1.0};
     for (glm::dvec3 l :
          {glm::dvec3(0.1, 0.2, 0.9), glm::dvec3(-0.9, 0.1, 0.2), glm::dvec3(0.5, -0.7, 0.02)}) {
       l = glm::normalize(l);
@@ -127,7 +127,7 @@ TEST(PolarRule, RayMapAndItsInverse) {
 }
 
 TEST(PolarRule, ArcDerivatives) {
-  dual::LobeView view{0.6, 0.8, 0.3};
+  dual::LobeView view{0.6, 0.8, 0.3, -1.0};
   dual::Arc arc{{0.0, 0.8, 0.6}, {1.0, 0.0, 0.0}, {0.0, -0.6, 0.8}, 0.8, 0.6, 0.6, 0.8, -0.9, 0.7};
   for (double t : {-0.9, -0.2, 0.0, 0.5}) {
     constexpr double kStep = 1e-6;

@@ -125,7 +125,7 @@ TEST_F(Expansion, UnknownIncludesAreRefusedWithFileAndLine) {
   EXPECT_EQ(ErrorOfRun(),
             Path("test.frag") +
                 ":2: unknown include \"nothing.glsl\"; expected a file under glsl/ or \"platform\", "
-                "\"brdf\", \"technique\", \"clip\", \"way\"");
+                "\"brdf\", \"diffuse\", \"technique\", \"clip\", \"way\"");
   folder_.Write("test.frag", "#include \"way\"\n");
   EXPECT_THAT(ErrorOfRun(),
               StartsWith(Path("test.frag") + ":1: unknown include \"way\" (glsl/way/up.glsl); expected"));

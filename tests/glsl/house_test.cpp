@@ -176,6 +176,7 @@ std::set<std::string> EmittedEffects() {
 std::set<std::string> HostDefines(const std::vector<Technique>& techniques) {
   std::set<std::string> names = EmittedEffects();
   names.insert({"AREALAB_FLOAT", "AREALAB_DOUBLE", "AREALAB_DUAL", "PATH_LIT", "PATH_ABOVE", "PATH_CROSSING", "PATH_BELOW", "PATH_FAR", "PATH_NEAR"});
+  for (const Brdf brdf : kDiffuseBrdfs) names.insert(Upper(std::string("diffuse_") + Name(brdf)));
   for (const Technique& technique : techniques) {
     for (const Option& option : technique.options) {
       for (const Choice& choice : option.choices) names.insert(Upper(option.name + "_" + choice.name));

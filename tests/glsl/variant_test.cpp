@@ -226,6 +226,30 @@ TEST(Variant, UnsupportedBrdfsAreNamedInASentence) {
                                                 " goes with the BRDF ggx alone; the scene's is ward");
   scene.brdf = Brdf::kGgx;
   EXPECT_EQ(WhyUnsupported(variant, scene), std::nullopt);
+
+  scene.diffuse = Brdf::kDisney;
+  EXPECT_EQ(WhyUnsupported(Parse("ltc"), scene), "ltc does not know the diffuse BRDF disney, which is the scene's; it knows lambert");
+  techniques[0].diffuse_brdfs = {"lambert", "disney"};
+  EXPECT_EQ(WhyUnsupported(variant, scene), std::nullopt);
+  techniques[0].options[0].choices[1].needs = {{"diffuse", "lambert"}};
+  EXPECT_EQ(WhyUnsupported(variant, scene), "ltc with " + option.name + "=" + option.choices[1].name +
+                                                " goes with the diffuse BRDF lambert alone; the scene's is disney");
+  variant.options[option.name] = option.choices[0].name;
+  EXPECT_EQ(WhyUnsupported(variant, scene), std::nullopt);
+  scene.sky = glm::dvec3(1.0);
+  EXPECT_EQ(WhyUnsupported(variant, scene), "the diffuse BRDF disney reflects no sky here");
+}
+
+// A table of the diffuse BRDF is read where it is not Lambert's alone.
+TEST(Variant, TablesOfTheDiffuseBrdf) {
+  std::vector<Technique> techniques = Techniques();
+  techniques[0].tables = {{"lobe", "lobe_{brdf}.exr"}, {"matte", "matte_{diffuse}.exr"}};
+  const Variant variant = DefaultVariant(techniques[0]);
+  EXPECT_EQ(TablesOf(variant, Brdf::kWard).size(), 1u);
+  const Brdfs brdfs(Brdf::kGgx, Brdf::kDisney);
+  const std::vector<Table> tables = TablesOf(variant, brdfs);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(TableFile(variant, tables[1], brdfs), "tables/matte_disney.exr");
 }
 
 }  // namespace
