@@ -129,7 +129,12 @@ def read_png(data, count=None):
     return width, height, rows
 
 
+# By how much a program under a sanitizer may be slower.
+PATIENCE = float(os.environ.get("AREALAB_PATIENCE", "1"))
+
+
 def until(condition, what, seconds=20.0):
+    seconds *= PATIENCE
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         result = condition()
@@ -798,7 +803,7 @@ class ViewTest(unittest.TestCase):
         until(lambda: "mine.glsl:22:" in window.log(), "error with file and line")
         self.assertTrue(window.picture() == first)  # the last good picture stays
         shader.write_text(TECHNIQUE % (0.8, WHOLE))
-        time.sleep(0.5)  # that is promised
+        time.sleep(0.5 * PATIENCE)  # that is promised
         self.assertFalse(read_png(window.shot(), 441)[2][440][3 * 300:3 * 301] == first[440 - BAR - 40][3 * 292:3 * 293])
         window.leave()
 
