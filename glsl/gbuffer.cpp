@@ -330,6 +330,13 @@ GBuffer::Geometry GBuffer::Gather(const Scene& scene, const glm::dvec3& camera) 
   return geometry;
 }
 
+SurfacePixels GBuffer::TakePixels() {
+  SurfacePixels taken{pixels_.width, pixels_.height, pixels_.view_position, std::move(pixels_.position), std::move(pixels_.normal),
+                      std::move(pixels_.base_color), pixels_.aperture};  // a cap's texture is known by it
+  pixels_.position.clear(), pixels_.normal.clear(), pixels_.base_color.clear();
+  return taken;
+}
+
 const SurfacePixels& GBuffer::Draw(const Scene& scene, glm::ivec2 size) {
   Allocate(size);
   const CameraView view = ViewOf(scene.camera, size);

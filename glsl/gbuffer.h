@@ -35,6 +35,7 @@ class GBuffer {
   const SurfacePixels& Draw(const Scene& scene, glm::ivec2 size);
 
   const SurfacePixels& pixels() const { return pixels_; }
+  SurfacePixels TakePixels();
   GLuint position() const { return position_.id(); }  // textures, RGBA32F, as SurfacePixels has them
   GLuint normal() const { return normal_.id(); }
   GLuint base_color() const { return base_color_.id(); }

@@ -372,6 +372,8 @@ const SurfacePixels& Renderer::DrawScene(const Scene& scene, glm::ivec2 size,
   return impl_->gbuffer.pixels();
 }
 
+SurfacePixels Renderer::TakePixels() { return impl_->gbuffer.TakePixels(); }
+
 RadianceImage Renderer::Shade(const Variant& variant, Precision precision,
                               const std::map<std::string, double>& knobs) {
   const ShadingWatch watch = impl_->Watch(variant);

@@ -32,6 +32,9 @@ class Renderer {
   // `effects_off` are shaded as if the scene did not call for them: names from SceneEffects.
   const SurfacePixels& DrawScene(const Scene& scene, glm::ivec2 size, const std::set<std::string>& effects_off = {});
 
+  // The host's copy of what DrawScene drew last, without copying it: what that returned is empty then. Shading goes on as before.
+  SurfacePixels TakePixels();
+
   // Compiles (once per content) and runs the lighting pass, in tiles where the variant says so. Throws InputError with the author's file and line
   // where the text does not compile, where a table or a knob does not exist, and where the variant does not
   // support the scene. `knobs` override the header's initial values by name.

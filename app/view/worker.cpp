@@ -117,8 +117,9 @@ class Worker::Shading {
 
   void DrawPicture(const ViewJob& job, std::uint64_t number, glm::ivec2 size, bool full, bool may_stop) {
     const auto start = Clock::now();
-    const SurfacePixels& pixels = renderer_->DrawScene(*job.scene, size, job.effects_off);
-    const auto emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(*job.scene, pixels));
+    renderer_->DrawScene(*job.scene, size, job.effects_off);
+    auto pixels = std::make_shared<const SurfacePixels>(renderer_->TakePixels());
+    const auto emission = std::make_shared<const std::vector<glm::vec3>>(EmissionImage(*job.scene, *pixels));
     scene_rate_.Add(Since(start), static_cast<double>(size.x) * size.y);
     worker_.Publish([&](ViewState& state) {
       state.error.clear();
@@ -141,9 +142,8 @@ class Worker::Shading {
       }
       worker_.Publish([&](ViewState& state) { state.variants[i] = std::move(shaded); });
     }
-    auto kept = std::make_shared<const SurfacePixels>(pixels);
     worker_.Publish([&](ViewState& state) {
-      state.pixels = std::move(kept);
+      state.pixels = std::move(pixels);
       state.reading.clear();
     });
   }
