@@ -218,7 +218,7 @@ LtcTables FineTables(const LtcTables& own, const SurfacePixels& pixels, const st
   const std::string name = "ltc-fine-" + hash.Name();
   // The columns' texels, of the matrices (two lobes' one after the other) and then of the terms.
   const std::size_t all = static_cast<std::size_t>(options.size) * static_cast<std::size_t>(options.size);
-  const std::size_t matrices = own.kind == FitKind::kTwo ? 2 : 1, count = static_cast<std::size_t>(options.size) * columns.size();
+  const std::size_t matrices = own.matrix.size() / own.terms.size(), count = static_cast<std::size_t>(options.size) * columns.size();
   std::vector<glm::vec4> packed((matrices + 1) * count);
   const auto each_texel = [&](LtcTables& tables, const auto& function) {
     for (std::size_t k = 0; k < packed.size(); ++k) {
