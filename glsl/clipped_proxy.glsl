@@ -4,9 +4,7 @@
 
 // Of the proxy sphere that has the same F, clipped at the horizon; ClippedSphere is the option "sphere".
 float ClippedProxy(VectorFormFactor f) {
-  float size = min(f.size, 1.0);
-  float elevation = clamp(f.height * f.inverse, -1.0, 1.0);
-  return AsFormFactor(ClippedSphere(size, elevation));
+  return AsFormFactor(ClippedSphere(f.size, f.height * f.inverse));
 }
 
 // Of the light itself. Where its sphere is clear of every horizon the clip leaves the height as it is; a table and a rational do not quite.

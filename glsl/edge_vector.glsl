@@ -1,4 +1,4 @@
-// An edge's part of a polygon's vector form factor, without 1/(2π), from its two corners. Dual; after an "edge".
+// An edge's part of a polygon's vector form factor, times kTurn, from its two corners. Dual; after an "edge".
 
 // A corner as the edges want it: see EdgeVertex. lambert: of the light itself rather than of the transformed one.
 vec3 EdgeVector(vec4 v0, vec4 v1, bool lambert) {
@@ -30,4 +30,4 @@ vec3 MeetHorizon(vec3 above, vec3 below) {
 }
 
 // From the sum of a polygon's edges.
-vec3 VectorOfEdges(vec3 sum) { return vec3(sum.x * (0.5 / kPi), sum.y * (0.5 / kPi), AsFormFactor(sum.z * (0.5 / kPi))); }
+vec3 VectorOfEdges(vec3 sum) { return vec3(sum.x * (1.0 / kTurn), sum.y * (1.0 / kTurn), AsFormFactor(sum.z * (1.0 / kTurn))); }

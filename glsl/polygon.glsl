@@ -3,8 +3,9 @@
 //
 // The form factor of a polygon for a clamped cosine about +z is F_z with the vector form factor [Lambert 1760; Baum et al. 1989]
 //   F = 1/(2π) Σ θ_i (v_i × v_{i+1}) / |v_i × v_{i+1}|,
-// θ_i the angle between successive corners. An option "edge" gives the quotient θ/|v_i × v_{i+1}|; a cross product along a
-// side of a parallelogram is linear in where the side lies, so few of them are ever formed.
+// θ_i the angle between successive corners. An option "edge" gives the quotient θ/|v_i × v_{i+1}|, its angles in the unit of which kTurn
+// make a full turn: 1, or 2π. A cross product along a side of a parallelogram is linear in where the side lies, so few of them are
+// ever formed.
 #include "lit.glsl"
 #include "surface.glsl"
 
@@ -46,8 +47,8 @@ float CrossZ(vec3 a, vec3 b) { return a.x * b.y - a.y * b.x; }
 // Below any light's (length)⁴: 1e-30 is a light of 3e-8 m seen from as far. Keeps an edge through the point finite.
 const float kSmallestEdge = 1e-30;
 
-// θ/line of an edge from the acute angle's, for an "edge" that leaves the mirroring to its caller: (π − θ')/line where d < 0.
-float MirroredEdge(float acute, float d, float line2) { return d >= 0.0 ? acute : kPi * inversesqrt(line2 + kSmallestEdge) - acute; }
+// θ/line, in turns, of an edge from the acute angle's, for an "edge" that leaves the mirroring to its caller: (π − θ')/line where d < 0.
+float MirroredEdge(float acute, float d, float line2) { return d >= 0.0 ? acute : 0.5 * inversesqrt(line2 + kSmallestEdge) - acute; }
 
 // A form factor lies in [0, 1]; rounding can leave that range.
 float AsFormFactor(float value) { return clamp(value, 0.0, 1.0); }

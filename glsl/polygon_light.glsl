@@ -36,7 +36,7 @@ bool IsSmallPolygon(Light light, PolygonView view) {
 }
 float SmallPolygonShare(Light light) { return light.area / (2.0 * light.products.z); }
 
-// Σ θ (v_i × v_{i+1})/|v_i × v_{i+1}| over the sides, clockwise seen from the lit side: 2π times the vector form factor of the whole polygon.
+// Σ θ (v_i × v_{i+1})/|v_i × v_{i+1}| over the sides, clockwise seen from the lit side: kTurn times the vector form factor of the whole polygon.
 vec3 PolygonSides(Light light, PolygonView view, bool lambert) {
   vec3 sum = vec3(0.0);
   vec4 from = EdgeVertex(PolygonCorner(light, view, 0));
@@ -53,7 +53,7 @@ vec3 PolygonVector(Light light, PolygonView view, bool lambert) {
   if (!Lit(!IsSmallPolygon(light, view))) {
     return SmallRectangleVector(view.center, view.axis_x * light.half_size.x, view.axis_y * light.half_size.y) * SmallPolygonShare(light);
   }
-  return PolygonSides(light, view, lambert) * (0.5 / kPi);
+  return PolygonSides(light, view, lambert) * (1.0 / kTurn);
 }
 
 // The vector form factor of what is above z = 0, its z the form factor for a clamped cosine about +z. Side by side,

@@ -1,6 +1,7 @@
 // The edge integral on unit vectors, the obtuse angle mirrored [Hill & Heitz 2016]. Dual.
 #include "polygon.glsl"
 
+const float kTurn = 2.0 * kPi;
 const bool kEdgeMirrored = false;
 const bool kEdgeUnit = true;  // whether EdgeVertex makes corners unit
 

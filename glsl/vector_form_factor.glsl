@@ -1,7 +1,7 @@
 // The unclipped vector form factor of a rectangle, F [Hill & Heitz 2016, "vector form factor"]. Dual; after an "edge".
 //
-// Around the corners (+,+), (−,+), (−,−), (+,−) of p ± a ± b the edges' crosses are twice
-//   −(p × a − a × b), −(p × b − a × b), p × a + a × b, p × b + a × b;
+// From the corner v of a parallelogram with the sides A and B, v, v − A, v − A − B, v − B, the edges' crosses are
+//   −v × A, −(v × B − A × B), v × A + A × B, v × B;
 // that runs clockwise seen from the origin, so F = −1/(2π) Σ θ cross/|cross|.
 #include "near.glsl"
 
@@ -31,12 +31,12 @@ VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b, bool
       return MakeVectorFormFactor(small, small.z);
     }
   }
-  vec3 sum = half_a + half_b;
-  vec3 difference = half_a - half_b;
-  vec3 v0 = center + sum;
-  vec3 v1 = center - difference;
-  vec3 v2 = center - sum;
-  vec3 v3 = center + difference;
+  vec3 a = 2.0 * half_a;
+  vec3 b = 2.0 * half_b;
+  vec3 v0 = center + half_a + half_b;
+  vec3 v1 = v0 - a;
+  vec3 v2 = v1 - b;
+  vec3 v3 = v0 - b;
   float l0 = dot(v0, v0);
   float l1 = dot(v1, v1);
   float l2 = dot(v2, v2);
@@ -45,24 +45,24 @@ VectorFormFactor ParallelogramVector(vec3 center, vec3 half_a, vec3 half_b, bool
   float d1 = dot(v1, v2);
   float d2 = dot(v2, v3);
   float d3 = dot(v3, v0);
-  vec3 p_a = cross(center, half_a);
-  vec3 p_b = cross(center, half_b);
-  vec3 a_b = cross(half_a, half_b);
-  vec3 line0 = p_a - a_b;
+  vec3 p_a = cross(center, a);
+  vec3 p_b = cross(center, b);
+  vec3 a_b = cross(half_a, b);
+  vec3 v_a = p_a - a_b;
   vec3 line1 = p_b - a_b;
   vec3 line2 = p_a + a_b;
-  vec3 line3 = p_b + a_b;
-  float t0 = EdgeRatio(d0, l0 * l1, 2.0, dot(line0, line0));
-  float t1 = EdgeRatio(d1, l1 * l2, 2.0, dot(line1, line1));
-  float t2 = EdgeRatio(d2, l2 * l3, 2.0, dot(line2, line2));
-  float t3 = EdgeRatio(d3, l3 * l0, 2.0, dot(line3, line3));
+  vec3 v_b = p_b + a_b;
+  float t0 = EdgeRatio(d0, l0 * l1, 1.0, dot(v_a, v_a));
+  float t1 = EdgeRatio(d1, l1 * l2, 1.0, dot(line1, line1));
+  float t2 = EdgeRatio(d2, l2 * l3, 1.0, dot(line2, line2));
+  float t3 = EdgeRatio(d3, l3 * l0, 1.0, dot(v_b, v_b));
   if (kEdgeMirrored && HasObtuseSide(min(min(d0, d1), min(d2, d3)) < 0.0)) {
-    t0 = MirroredEdge(t0, d0, dot(line0, line0));
+    t0 = MirroredEdge(t0, d0, dot(v_a, v_a));
     t1 = MirroredEdge(t1, d1, dot(line1, line1));
     t2 = MirroredEdge(t2, d2, dot(line2, line2));
-    t3 = MirroredEdge(t3, d3, dot(line3, line3));
+    t3 = MirroredEdge(t3, d3, dot(v_b, v_b));
   }
-  vec3 f = (0.5 / kPi * (t0 - t2)) * p_a + (0.5 / kPi * (t1 - t3)) * p_b - (0.5 / kPi * (t0 + t1 + t2 + t3)) * a_b;
+  vec3 f = ((t0 - t2) * p_a + (t1 - t3) * p_b - (t0 + t1 + t2 + t3) * a_b) * (1.0 / kTurn);
   return MakeVectorFormFactor(f, f.z);
 }
 
@@ -108,6 +108,6 @@ VectorFormFactor LambertVector(RectangleView view) {
   float beta = t1 - t3;
   // Of the sides' distances from the point along their normals: Σ t |line's foot|.
   vec3 f = vec3(-beta * p.z, alpha * p.z, t1 * x1 - t3 * x0 - t0 * y0 + t2 * y1);
-  f *= 0.5 / kPi;
+  f *= 1.0 / kTurn;
   return MakeVectorFormFactor(f, dot(view.horizon, f));
 }

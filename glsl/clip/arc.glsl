@@ -81,22 +81,21 @@ vec3 ClippedVector(vec3 center, vec3 half_a, vec3 half_b, bool may_be_small) {
   }
   // Sides rising the same way keep half_a × half_b towards the origin: then the polygon runs clockwise. A side in the
   // horizon adds its angle upwards.
-  float scale = sign_a * sign_b * (-0.125 / kPi);
+  float scale = sign_a * sign_b * (-0.25 / kTurn);
   vec3 sum = ((t0 - t2) * scale) * c_a + ((t1 - t3) * scale) * c_b + ((t0 * k.k1 + t3 * k.k2) * scale) * a_b;
-  return vec3(sum.x, sum.y, AsFormFactor(sum.z + closing * (0.5 / kPi)));
+  return vec3(sum.x, sum.y, AsFormFactor(sum.z + closing * (1.0 / kTurn)));
 }
 
 // The form factor of the light itself, above the horizon: in its own axes its sides are parallel to the axes, which leaves few products.
 // Heights over the horizon are taken there too: in float the light's two descriptions differ by more than what matters at its sides.
 float ClippedLambert(RectangleView view) {
   if (!Lit(!view.small)) return ClippedSmallRectangle(view.center, view.half_a, view.half_b).z;
-  vec3 n = view.horizon;
-  float sign_a = n.x < 0.0 ? -2.0 : 2.0;
-  float sign_b = n.y < 0.0 ? -2.0 : 2.0;
-  float side_x = view.half_size.x * sign_a;
-  float side_y = view.half_size.y * sign_b;
-  float x = view.in_plane.x + 0.5 * side_x;
-  float y = view.in_plane.y + 0.5 * side_y;
+  // Turned over where a side falls, light, point and horizon alike, which leaves the form factor as it is: now both rise.
+  vec3 n = vec3(abs(view.horizon.x), abs(view.horizon.y), view.horizon.z);
+  float side_x = 2.0 * view.half_size.x;
+  float side_y = 2.0 * view.half_size.y;
+  float x = view.half_size.x + (view.horizon.x < 0.0 ? -view.in_plane.x : view.in_plane.x);
+  float y = view.half_size.y + (view.horizon.y < 0.0 ? -view.in_plane.y : view.in_plane.y);
   float z = view.in_plane.z;
   HorizonShares k;
   k.k0 = k.k1 = k.k2 = k.k3 = 1.0;
@@ -128,12 +127,10 @@ float ClippedLambert(RectangleView view) {
   float l3 = x4 * x4 + row;
   float l4 = y4 * y4 + column4;
   // θ over the distance from the edge's line: that times the edge's length is its cross product.
-  float length_x = 2.0 * view.half_size.x;
-  float length_y = 2.0 * view.half_size.y;
-  float t0 = LambertEdgeRatio(d0, l0 * l1, k.k0 * length_x, row0);
-  float t1 = LambertEdgeRatio(d1, l1 * lc, k.k1 * length_y, column);
-  float t2 = LambertEdgeRatio(d2, lc * l3, k.k2 * length_x, row);
-  float t3 = LambertEdgeRatio(d3, l3 * l4, k.k3 * length_y, column4);
+  float t0 = LambertEdgeRatio(d0, l0 * l1, k.k0 * side_x, row0);
+  float t1 = LambertEdgeRatio(d1, l1 * lc, k.k1 * side_y, column);
+  float t2 = LambertEdgeRatio(d2, lc * l3, k.k2 * side_x, row);
+  float t3 = LambertEdgeRatio(d3, l3 * l4, k.k3 * side_y, column4);
   if (kEdgeMirrored && HasObtuseSide(min(min(d0, d1), min(d2, d3)) < 0.0)) {
     t0 = MirroredEdge(t0, d0, row0);
     t1 = MirroredEdge(t1, d1, column);
@@ -151,6 +148,6 @@ float ClippedLambert(RectangleView view) {
     float area = abs((y4 - y0) * (n.x * z - n.z * x0) - (x4 - x0) * u0);
     closing = EdgeAngle(x4 * x0 + y4 * y0 + z2, l4 * l0, area);
   }
-  float sum = sign_b * (t0 * u0 - t2 * u2) + sign_a * (t1 * u1 - t3 * u3);
-  return AsFormFactor((-0.25 / kPi) * sum + closing * (0.5 / kPi));
+  float sum = t2 * u2 - t0 * u0 + t3 * u3 - t1 * u1 + closing;
+  return AsFormFactor(sum * (1.0 / kTurn));
 }

@@ -2,6 +2,7 @@
 // angle's, and with them, where opposite sides cancel, a light that is far: what the other forms are held against. Dual.
 #include "polygon.glsl"
 
+const float kTurn = 2.0 * kPi;
 const bool kEdgeMirrored = false;
 const bool kEdgeUnit = false;
 

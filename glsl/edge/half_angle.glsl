@@ -2,14 +2,16 @@
 //
 // With m = |v0||v1|, d = v0·v1 and q = m + d, u = √(q/m) is √2 times the cosine of half the angle θ, and
 //   θ/|v0 × v1| = P(u)/√(m q), P(u) = √2 acos(u/√2)/√(1 − u²/2),
-// smooth on [0, √2], by a minimax polynomial of degree 7, relative error 4.3e-7. In float, q has few digits left as θ nears π.
+// smooth on [0, √2], by a minimax polynomial of degree 7, relative error 4.3e-7; in turns. In float, q has few digits left as θ nears π.
 #include "polygon.glsl"
 
+// P/(2π).
 float WholeEdgePolynomial(float u) {
-  return 2.22144051 + u * (-0.999909759 + u * (0.553942327 + u * (-0.324588937 + u * (0.180520423 +
-         u * (-0.0815341527 + u * (0.0243117182 - u * 0.00338516184))))));
+  return 0.353553238 + u * (-0.159140581 + u * (0.0881626595 + u * (-0.0516599338 + u * (0.0287307176 +
+         u * (-0.0129765634 + u * (0.00386933013 - u * 0.00053876524))))));
 }
 
+const float kTurn = 1.0;
 const bool kEdgeMirrored = false;
 const bool kEdgeUnit = false;
 

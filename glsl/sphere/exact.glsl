@@ -4,7 +4,8 @@
 // size: sin² of the sphere's angular radius, its form factor when faced, [0, 1]; elevation: cosine between its centre and
 // the normal.
 float ClippedSphere(float size, float elevation) {
-  float y = elevation;
+  float y = clamp(elevation, -1.0, 1.0);  // rounding can leave the range, and that of size below
+  size = min(size, 1.0);
   if (y * y >= size) return size * max(y, 0.0);  // wholly above or wholly below
   float sine = sqrt(1.0 - y * y);
   // cot² of the angular radius; from within the sphere the whole hemisphere is lit.

@@ -83,6 +83,7 @@ namespace stream {
 }  // namespace fast_acos
 namespace exact {
 // The edges without any approximation: what is left is the clip's own error.
+const float kTurn = 2.0 * kPi;
 const bool kEdgeMirrored = false;
 const bool kEdgeUnit = false;
 vec4 EdgeVertex(vec3 v) {
