@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -124,9 +125,17 @@ class Progress {
   std::mutex mutex_;
 };
 
+// What one node's arrays leave free serves the next: glibc would hand it back and have it zeroed again, a tenth of the fit's time.
+void KeepFreedMemory() {
+#ifdef __GLIBC__
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
+}
+
 // All nodes of the given columns; the others stay 0.
 LtcTables FitColumns(Brdf brdf, FitKind kind, const FitOptions& options, const std::vector<int>& columns,
                      const std::function<void(double)>& report) {
+  KeepFreedMemory();
   const int size = options.size;
   LtcTables tables{brdf, kind, OwnStorage(brdf, kind), size, {}, {}};
   const auto count = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);

@@ -45,6 +45,10 @@ bool IsLobe(const Terms& p) {
   return p[0] > 0.0 && p[3] > 0.0 && Determinant(p) > 0.0;
 }
 
+bool Admissible(const Terms& p) {
+  return p.allFinite() && IsLobe(p);
+}
+
 bool Admissible(const Unknowns& p) {
   return p.allFinite() && IsLobe(p.head<4>());
 }
@@ -54,6 +58,7 @@ bool Admissible(const PairUnknowns& p) {
 }
 
 // Puts a step's end where it may be: the second of two lobes is the lesser, or they could change roles from cell to cell.
+void Confine(Terms&) {}
 void Confine(Unknowns&) {}
 void Confine(PairUnknowns& p) {
   p[8] = std::clamp(p[8], 0.0, 0.5);
@@ -117,21 +122,17 @@ WhiteNodes Whiten(const Whitening& whitening, const Nodes& nodes) {
 }
 
 // ∫(ρ − k·LTC)² above the horizon over ∫ρ², with k = albedo/(1 − b), plus the penalty on b.
-Expansion ExpandDensityLoss(const Unknowns& p, const Nodes& nodes, const WhiteNodes& white,
+ExpansionOf<4> ExpandDensityLoss(const Terms& p, const Nodes& nodes, const WhiteNodes& white,
                             const Whitening& whitening, double albedo, double total, double leak_penalty) {
-  Expansion sum;
-  const Terms terms = p.head<4>();
-  const Leak leak = BelowHorizon(whitening, terms);
-  const double magnitude = albedo / (1.0 - leak.share);
-  Unknowns jacobian = Unknowns::Zero();
+  ExpansionOf<4> sum;
+  const Leak leak = BelowHorizon(whitening, p);
+  const double magnitude = albedo / (1.0 - leak.share), kept = 1.0 / (1.0 - leak.share), inverse_total = 1.0 / total;
   Terms gradient;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double density = LtcDensity(terms, white.direction[i], white.scale, &gradient);
-    jacobian.head<4>() = magnitude * (gradient + density / (1.0 - leak.share) * leak.gradient);
-    sum.Add(magnitude * density - nodes.density[i], jacobian, nodes.weight[i] / total);
+    const double density = LtcDensity(p, white.direction[i], white.scale, &gradient);
+    sum.Add(magnitude * density - nodes.density[i], magnitude * (gradient + density * kept * leak.gradient), nodes.weight[i] * inverse_total);
   }
-  jacobian.head<4>() = leak.gradient;
-  sum.Add(leak.share, jacobian, leak_penalty);
+  sum.Add(leak.share, leak.gradient, leak_penalty);
   return sum;
 }
 
@@ -168,7 +169,7 @@ Terms StartAbout(const Whitening& whitening, const glm::dvec3& direction, double
 }
 
 struct DensityStage {
-  Unknowns p;
+  Terms p = Terms::Zero();
   double loss = 0.0;
 };
 
@@ -178,7 +179,7 @@ DensityStage FitDensity(const View& view, const Nodes& nodes, const Whitening& w
   double total = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     total += nodes.weight[i] * nodes.density[i] * nodes.density[i];
-  const auto expand = [&](const Unknowns& p) {
+  const auto expand = [&](const Terms& p) {
     return ExpandDensityLoss(p, nodes, white, whitening, moments.albedo, total, leak_penalty);
   };
   std::vector<Terms> starts;
@@ -192,12 +193,11 @@ DensityStage FitDensity(const View& view, const Nodes& nodes, const Whitening& w
     starts.push_back(Terms(1.0, 0.0, 0.0, width / whitening.depth));
   }
   const bool free = previous != nullptr;
-  const std::array<bool, 5> active{free, free, free, true, false};
+  const std::array<bool, 4> active{free, free, free, true};
   DensityStage best;
   best.loss = std::numeric_limits<double>::infinity();
   for (const Terms& start : starts) {
-    Unknowns p = Unknowns::Zero();
-    p.head<4>() = start;
+    Terms p = start;
     if (!Admissible(p)) continue;
     const double loss = Minimise(expand, &p, active, 30, 1e-6);
     if (loss < best.loss) best = {p, loss};
@@ -216,13 +216,14 @@ double UpperQuadIntegral(const Cell& cell, const Quad& quad) {
   return cell.share == 0.0 ? first : (1.0 - cell.share) * first + cell.share * UpperQuadIntegral(cell.second, quad);
 }
 
-Cell MakeCell(const Whitening& whitening, const LobeMoments& moments, const Unknowns& p) {
+// cosine: weight of the cosine lobe beside it.
+Cell MakeCell(const Whitening& whitening, const LobeMoments& moments, const Terms& p, double cosine = 0.0) {
   Cell cell;
-  cell.m = whitening.ToLocal(p.head<4>());
+  cell.m = whitening.ToLocal(p);
   cell.albedo = moments.albedo;
   cell.schlick = moments.schlick;
-  cell.leak = BelowHorizon(whitening, p.head<4>()).share;
-  cell.cosine = p[4];
+  cell.leak = BelowHorizon(whitening, p).share;
+  cell.cosine = cosine;
   return cell;
 }
 
@@ -248,41 +249,54 @@ std::vector<double> LossWeights(const std::vector<double>& wanted, std::size_t w
   return weight;
 }
 
+// Compiled for wider vectors too; without fused products, so that both give the same bits.
+#if defined(__x86_64__) && !defined(__clang__)
+#define AREALAB_FIT_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define AREALAB_FIT_CLONES
+#endif
+constexpr std::size_t kLanes = 8;
+// Σ share over the directions with n·d > 0 for the four n, whose length makes the clamp below a step. count: a multiple of kLanes.
+AREALAB_FIT_CLONES float SumInside(const float* x, const float* y, const float* z, const float* share, std::size_t count,
+                                   const std::array<glm::vec3, 4>& n) {
+  std::array<float, kLanes> sum{};
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const std::size_t j = i + k;
+      float least = 1.0f;
+      for (const glm::vec3& normal : n) {
+        const float d = x[j] * normal.x + y[j] * normal.y + z[j] * normal.z;
+        least = d < least ? d : least;
+      }
+      sum[k] += (least > 0.0f ? least : 0.0f) * share[j];
+    }
+  }
+  return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+}
+
 // Sums over the nodes inside a quad.
 class MaskedSum {
  public:
   MaskedSum(const Nodes& nodes, const std::vector<double>& values) {
-    const auto padded = static_cast<Eigen::Index>((nodes.size() + kLanes - 1) / kLanes * kLanes);
-    for (Eigen::ArrayXf* array : {&x_, &y_, &z_, &share_}) array->setZero(padded);
+    for (std::vector<float>* array : {&x_, &y_, &z_, &share_}) array->resize((nodes.size() + kLanes - 1) / kLanes * kLanes);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      x_[at] = static_cast<float>(nodes.x[i]);
-      y_[at] = static_cast<float>(nodes.y[i]);
-      z_[at] = static_cast<float>(nodes.z[i]);
-      share_[at] = static_cast<float>(nodes.weight[i] * values[i]);
+      x_[i] = static_cast<float>(nodes.x[i]);
+      y_[i] = static_cast<float>(nodes.y[i]);
+      z_[i] = static_cast<float>(nodes.z[i]);
+      share_[i] = static_cast<float>(nodes.weight[i] * values[i]);
     }
   }
 
   double operator()(const Quad& quad) const {
-    using Lanes = Eigen::Array<float, kLanes, 1>;
-    // Scaled so that the clamp below is a step, but for directions within 1e-25 of an edge's plane.
+    // Scaled so that the clamp is a step, but for directions within 1e-25 of an edge's plane.
     constexpr double kSteep = 1e25;
     std::array<glm::vec3, 4> n;
     for (std::size_t i = 0; i < 4; ++i) n[i] = glm::vec3(glm::normalize(quad.normal[i]) * kSteep);
-    Lanes sum = Lanes::Zero();
-    for (Eigen::Index i = 0; i < x_.size(); i += kLanes) {
-      const Lanes x = x_.segment<kLanes>(i), y = y_.segment<kLanes>(i), z = z_.segment<kLanes>(i);
-      const Lanes d0 = x * n[0].x + y * n[0].y + z * n[0].z, d1 = x * n[1].x + y * n[1].y + z * n[1].z;
-      const Lanes d2 = x * n[2].x + y * n[2].y + z * n[2].z, d3 = x * n[3].x + y * n[3].y + z * n[3].z;
-      const Lanes inside = d0.min(d1).min(d2.min(d3)).max(0.0f).min(1.0f);
-      sum += inside * share_.segment<kLanes>(i);
-    }
-    return static_cast<double>(sum.sum());
+    return static_cast<double>(SumInside(x_.data(), y_.data(), z_.data(), share_.data(), x_.size(), n));
   }
 
  private:
-  static constexpr int kLanes = 8;
-  Eigen::ArrayXf x_, y_, z_, share_;
+  std::vector<float> x_, y_, z_, share_;
 };
 
 }  // namespace
@@ -381,7 +395,8 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
   const bool free = previous != nullptr;
   const std::array<bool, 5> active{free, free, free, true, settings.with_cosine};
   // One valley: where tried, at 80° and 88°, ten to twelve of twelve random starts met in the same optimum.
-  Unknowns best = density.p;
+  Unknowns best = Unknowns::Zero();
+  best.head<4>() = density.p;
   if (previous) {
     Unknowns other = Unknowns::Zero();
     other.head<4>() = whitening.FromLocal(previous->m);
@@ -389,7 +404,7 @@ Cell FitPolygonCell(const View& view, const LossQuads& quads, const PolygonFit& 
     if (Admissible(other) && expand(other).loss < expand(best).loss) best = other;
   }
   Minimise(expand, &best, active, 30, 1e-6);
-  return MakeCell(whitening, moments, best);
+  return MakeCell(whitening, moments, best.head<4>(), best[4]);
 }
 
 namespace {
@@ -568,7 +583,7 @@ PublishedCell FitPublishedCell(const View& view, int nodes, bool isotropic, cons
                           : Terms(start.m22 / start.m11, 0.0, -start.m13 * start.m22 / start.m11, start.m22);
   Minimise(expand, &p, {!isotropic, false, !isotropic, true, false}, 100, 1e-9);
   PublishedCell result;
-  result.cell = MakeCell(frame, moments, p);
+  result.cell = MakeCell(frame, moments, p.head<4>());
   result.terms = {p[3] / p[0], p[3], -p[2] / p[0]};
   return result;
 }

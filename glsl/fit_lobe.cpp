@@ -138,14 +138,15 @@ Nodes UpperNodes(const View& view, int radial, int azimuthal) {
       const double last = std::asinh(std::min(tan_last, LastSlope(view, cos_phi)) / alpha);
       for (const auto& [t_position, t_weight] : across) {
         const double t = last * t_position;
-        const double tan_h = alpha * std::sinh(t);
+        const double grown = std::exp(t), shrunk = 1.0 / grown;
+        const double tan_h = alpha * 0.5 * (grown - shrunk);
         const double tan2 = tan_h * tan_h;
         const double cos_h = 1.0 / std::sqrt(1.0 + tan2);
         const glm::dvec3 half(tan_h * cos_phi * cos_h, tan_h * sin_phi * cos_h, cos_h);
         const double v_dot_h = s * half.x + c * half.z;
         const double n_dot_l = std::max((c + 2.0 * k * tan_h - c * tan2) * cos_h * cos_h, 0.0);
         // dωl = 4 v·h dωh, dωh = τ/(1+τ²)^{3/2} dτ dφ, dτ = α cosh t dt; both halves of φ.
-        const double jacobian = 4.0 * v_dot_h * tan_h * cos_h * cos_h * cos_h * alpha * std::cosh(t) * last *
+        const double jacobian = 4.0 * v_dot_h * tan_h * cos_h * cos_h * cos_h * alpha * 0.5 * (grown + shrunk) * last *
                                 glm::half_pi<double>();
         nodes.x.push_back(2.0 * v_dot_h * half.x - s);
         nodes.y.push_back(2.0 * v_dot_h * half.y);

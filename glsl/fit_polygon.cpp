@@ -78,6 +78,27 @@ Leak BelowHorizon(const Whitening& whitening, const Terms& p) {
 
 namespace {
 
+// atan2(y, x) for y ≥ 0 within 3e-15, which takes the library three times as long: about the nearest of 0, π/4, π/2, by a
+// minimax polynomial.
+double UpperAngle(double y, double x) {
+  const double least = std::min(y, std::abs(x)), most = std::max(y, std::abs(x));
+  const bool middle = least > 0.41421356237309505 * most;  // tan π/8
+  const double over = middle ? least + most : most;
+  const double t = over > 0.0 ? (middle ? least - most : least) / over : 0.0, s = t * t;
+  double angle =
+      t * (1.0 +
+           s * (-0.3333333333322733 +
+                s * (0.1999999997938119 +
+                     s * (-0.14285712724563196 +
+                          s * (0.11111050853183427 +
+                               s * (-0.09089565599265453 +
+                                    s * (0.07673907636400906 +
+                                         s * (-0.06508241431158518 + s * (0.05032130023152495 - s * 0.025416354691696633)))))))));
+  if (middle) angle += glm::quarter_pi<double>();
+  if (y > std::abs(x)) angle = glm::half_pi<double>() - angle;
+  return x < 0.0 ? glm::pi<double>() - angle : angle;
+}
+
 void MakeNormals(Quad* quad) {
   for (std::size_t i = 0; i < quad->count; ++i)
     quad->normal[i] = glm::cross(quad->corner[i], quad->corner[(i + 1) % quad->count]);
@@ -139,14 +160,17 @@ double QuadIntegral(const Terms& p, const Quad& quad, Terms* gradient) {
     if (za <= 0.0 && zb <= 0.0) continue;
     glm::dvec3 a = u[i], b = u[next];
     double length_a = length[i], length_b = length[next];
+    double share = 1.0;  // of |n| that |a × b| is
     if (za <= 0.0) {
       a = {(zb * a.x - za * b.x), (zb * a.y - za * b.y), 0.0};
       length_a = glm::length(a);
+      share = zb;
       enters = a;
       crosses = true;
     } else if (zb <= 0.0) {
       b = {(za * b.x - zb * a.x), (za * b.y - zb * a.y), 0.0};
       length_b = glm::length(b);
+      share = za;
       leaves = b;
       crosses = true;
     }
@@ -155,20 +179,19 @@ double QuadIntegral(const Terms& p, const Quad& quad, Terms* gradient) {
     const glm::dvec3& n0 = quad.normal[i];
     const glm::dvec3 n(p[3] * n0.x - p[1] * n0.z, determinant * n0.y, p[0] * n0.z - p[2] * n0.x);
     const double n_length = glm::length(n);
-    const double scale = 1.0 / (length_a * length_b);
-    const double cosine = glm::dot(a, b) * scale;
-    const double sine = glm::length(glm::cross(a, b)) * scale;
-    const double angle = std::atan2(sine, cosine);
     if (!(n_length > 0.0)) continue;
-    sum += angle * n.z / n_length;
+    const double dot = glm::dot(a, b), area = share * n_length;
+    const double angle = UpperAngle(area, dot), inverse_n = 1.0 / n_length;
+    sum += angle * n.z * inverse_n;
     if (!gradient) continue;
     // ∂/∂n of the integral = (1/π) ∫ along the arc of ω ω_z ds / |n|, with ω = â cos t + ê sin t.
-    const glm::dvec3 a_unit = a / length_a;
-    const glm::dvec3 e = glm::cross(n, a_unit) / n_length;
+    const double inverse_a = 1.0 / length_a, scale = inverse_a / length_b, sine = area * scale, cosine = dot * scale;
+    const glm::dvec3 a_unit = a * inverse_a;
+    const glm::dvec3 e = glm::cross(n, a_unit) * inverse_n;
     const double cc = 0.5 * (angle + sine * cosine), ss = 0.5 * (angle - sine * cosine),
                  cs = 0.5 * sine * sine;
-    const glm::dvec3 g = ((a_unit.z * cc + e.z * cs) * a_unit + (a_unit.z * cs + e.z * ss) * e) /
-                         (glm::pi<double>() * n_length);
+    const glm::dvec3 g = ((a_unit.z * cc + e.z * cs) * a_unit + (a_unit.z * cs + e.z * ss) * e) *
+                         (glm::one_over_pi<double>() * inverse_n);
     (*gradient)[0] += g.y * p[3] * n0.y + g.z * n0.z;
     (*gradient)[1] += -g.x * n0.z - g.y * p[2] * n0.y;
     (*gradient)[2] += -g.y * p[1] * n0.y - g.z * n0.x;
