@@ -11,6 +11,7 @@
 
 #include "compare/context.h"
 #include "glsl/shader_library.h"
+#include "scenes/scene.h"
 
 namespace arealab {
 
@@ -29,6 +30,14 @@ struct CommonOptions {
   ShaderLibrary Library() const;
   glm::ivec2 Size() const;  // throws InputError
   std::filesystem::path CacheFolder() const;
+};
+
+// Where no scene says it: the BRDFs.
+struct BrdfOptions {
+  std::string specular = "ggx", diffuse = "lambert";
+
+  void Add(CLI::App& command);
+  Brdfs Chosen() const;
 };
 
 // CLI::Range lets NaN pass.

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <span>
 
 #include "app/commands.h"
 #include "compare/program_cache.h"
@@ -15,6 +17,23 @@ void CommonOptions::AddContext(CLI::App& command) {
 
 void CommonOptions::AddSize(CLI::App& command) {
   command.add_option("--size", size, "of the picture, WxH in pixels")->capture_default_str();
+}
+
+void BrdfOptions::Add(CLI::App& command) {
+  const auto names = [](std::span<const Brdf> brdfs) {
+    std::vector<std::string> all;
+    for (const Brdf brdf : brdfs) all.emplace_back(Name(brdf));
+    return all;
+  };
+  command.add_option("--brdf", specular, "where no scene says it")->capture_default_str()->check(CLI::IsMember(names(kBrdfs)));
+  command.add_option("--diffuse", diffuse, "the diffuse BRDF, where no scene says it")->capture_default_str()->check(CLI::IsMember(names(kDiffuseBrdfs)));
+}
+
+Brdfs BrdfOptions::Chosen() const {
+  const auto named = [](std::span<const Brdf> known, const std::string& wanted) {
+    return *std::ranges::find(known, wanted, [](Brdf brdf) { return std::string(Name(brdf)); });
+  };
+  return {named(kBrdfs, specular), named(kDiffuseBrdfs, diffuse)};
 }
 
 void CommonOptions::AddGlsl(CLI::App& command) {

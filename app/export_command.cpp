@@ -47,7 +47,7 @@ struct ExportArguments {
   CommonOptions common;
   std::string scene;
   std::vector<std::string> effects;
-  std::string brdf = "ggx", diffuse = "lambert";
+  BrdfOptions brdfs;
   std::string technique = "ltc";
   std::vector<std::string> forced;
   std::vector<std::string> targets = kExportTargets;
@@ -276,10 +276,7 @@ void RunExport(const ExportArguments& arguments) {
   const Variant variant = ParseVariant(techniques, name);
   std::vector<Effect> effects;
   std::vector<Light> shown;
-  const auto named = [](std::span<const Brdf> known, const std::string& wanted) {
-    return *std::ranges::find(known, wanted, [](Brdf brdf) { return std::string(Name(brdf)); });
-  };
-  Brdfs brdfs(named(kBrdfs, arguments.brdf), named(kDiffuseBrdfs, arguments.diffuse));
+  Brdfs brdfs = arguments.brdfs.Chosen();
   if (arguments.scene.empty()) {
     effects = NamedEffects(arguments.effects);
   } else {
@@ -337,13 +334,7 @@ void AddExport(CLI::App& app, int& /*status*/) {
   CLI::App* command = app.add_subcommand("export", "The shader that a scene calls for, as text, tables and a description to take home");
   command->add_option("scene", arguments->scene, "a built-in name or a scene file");
   command->add_option("--effects", arguments->effects, "instead of a scene: the effects that are on")->delimiter(',');
-  const auto names = [](std::span<const Brdf> brdfs) {
-    std::vector<std::string> all;
-    for (const Brdf brdf : brdfs) all.emplace_back(Name(brdf));
-    return all;
-  };
-  command->add_option("--brdf", arguments->brdf, "with --effects")->capture_default_str()->check(CLI::IsMember(names(kBrdfs)));
-  command->add_option("--diffuse", arguments->diffuse, "the diffuse BRDF, with --effects")->capture_default_str()->check(CLI::IsMember(names(kDiffuseBrdfs)));
+  arguments->brdfs.Add(*command);
   command->add_option("--technique", arguments->technique, "a variant")->capture_default_str();
   command->add_option("--effect", arguments->forced, "NAME=0 or NAME=1: forced off or on; may be given several times");
   command->add_option("--target", arguments->targets, "what to write beside the GLSL 3.30 text; hlsl writes spirv too")

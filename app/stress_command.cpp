@@ -21,6 +21,7 @@ struct StressArguments {
   std::int64_t cases = StressOptions{}.cases;
   std::uint64_t seed = StressOptions{}.seed;
   std::string one_case, out;
+  BrdfOptions brdfs;
   bool json = false;
   bool mutants = false;
 };
@@ -146,8 +147,8 @@ void PrintStress(const StressResult& result) {
       result.failures());
 }
 
-void PrintCase(const PointCase& c, const std::vector<CaseValues>& rows) {
-  const LightIntegrals truth = c.Truth();
+void PrintCase(const PointCase& c, const std::vector<CaseValues>& rows, Brdfs brdfs) {
+  const LightIntegrals truth = c.Truth(1e-4, brdfs);
   const double specular =
       c.radiance * (c.f0 * (truth.specular - truth.specular_grazing) + truth.specular_grazing);
   const MaximalContribution most = MaximalContributionOf(c);
@@ -206,10 +207,19 @@ int RunStress(const StressArguments& arguments) {
   options.seed = arguments.seed;
   options.pictures = !arguments.out.empty();
   options.fp16 = true;
+  options.brdfs = arguments.brdfs.Chosen();
   // A variant that is asked for is judged; of all, the default forms are.
   for (const std::string& name : arguments.techniques)
     options.variants.push_back(ParseVariant(techniques, name));
   if (options.variants.empty()) options.variants = DefaultVariants(techniques);
+  Scene surfaces;
+  surfaces.brdf = options.brdfs.specular;
+  surfaces.diffuse = options.brdfs.diffuse;
+  std::erase_if(options.variants, [&](const Variant& variant) {
+    const auto why = WhyUnsupported(variant, surfaces);
+    if (why && !arguments.techniques.empty()) throw InputError(fmt::format("stress: {}; expected a technique that knows both BRDFs", *why));
+    return why.has_value();
+  });
   for (const Variant& variant : options.variants) {
     options.judged.push_back(!arguments.techniques.empty() || variant == DefaultVariant(*variant.technique));
   }
@@ -219,7 +229,7 @@ int RunStress(const StressArguments& arguments) {
   const std::unique_ptr<Context> context = common.MakeContext();
   if (!arguments.one_case.empty()) {
     const PointCase c = ParseCase(arguments.one_case);
-    PrintCase(c, ShadeCase(*context, library, options.variants, c));
+    PrintCase(c, ShadeCase(*context, library, options.variants, c, options.brdfs), options.brdfs);
     return 0;
   }
   StressResult result;
@@ -258,6 +268,7 @@ void AddStress(CLI::App& app, int& status) {
                     "test the checks instead: wrong shader text, one slip at a time, and what catches it");
   command->add_option("--out", arguments->out, "folder for stress.html and the worst cases as scenes");
   command->add_flag("--json", arguments->json, "print the figures as JSON");
+  arguments->brdfs.Add(*command);
   arguments->common.AddContext(*command);
   arguments->common.AddGlsl(*command);
   command->callback([arguments, &status] { status = RunStress(*arguments); });

@@ -228,9 +228,9 @@ std::vector<ErrorSplit::Cause> DescribeCauses(const std::vector<CausePicture>& p
   return causes;
 }
 
-ErrorSplit SplitError(Renderer& renderer, const Variant& variant, const RadianceImage& image, const RadianceImage& truth) {
+ErrorSplit SplitError(Renderer& renderer, const Variant& variant, Brdfs brdfs, const RadianceImage& image, const RadianceImage& truth) {
   const RadianceImage in_double = renderer.Shade(variant, Precision::kDouble),
-                      ideal = renderer.Shade(IdealVariant(variant), Precision::kDouble);
+                      ideal = renderer.Shade(IdealVariant(variant, brdfs), Precision::kDouble);
   const double floor = RelativeFloor(TotalRadiance(truth));
   ErrorSplit split;
   const auto part = [&](const char* name, const RadianceImage& a, const RadianceImage& b) {
@@ -321,7 +321,7 @@ Results Compare(Context& context, const ShaderLibrary& library, const CompareOpt
       report(variant.ShortName(), 0.5 + 0.2 * static_cast<double>(v) / static_cast<double>(options.variants.size()));
       VariantResult row = Describe(variant, scene);
       if (row.supported) row.image = std::make_shared<const RadianceImage>(renderer.Shade(variant));
-      if (row.supported && options.split) row.split = SplitError(renderer, variant, *row.image, truth.radiance);
+      if (row.supported && options.split) row.split = SplitError(renderer, variant, scene.brdfs(), *row.image, truth.radiance);
       if (row.supported && options.split && !WhyNoCauses(variant, scene)) {
         row.split.causes = DescribeCauses(SplitByCause(renderer, library, variant, scene, options.size, *row.image, truth.radiance, options.truth, options.cache), truth.radiance);
       }

@@ -30,8 +30,8 @@ constexpr std::size_t kIdealCases = 1024;
 constexpr double kLeastScale = 2e-31;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A family that is not here meets the general bounds. Each stands about three times above what 400 000 cases
-// showed.
+// A family that is not here meets the general bounds. Each stands about three times above what 2 000 000 cases
+// showed, 400 000 of each of the seeds 1 to 5: tails are heavy, and other seeds may show more.
 const char* const kThin =
     "the terms of the two long sides differ by width over distance of themselves, and float has 6e-8 of "
     "each: 5e-2 measured at 1 : 1e5";
@@ -62,10 +62,10 @@ const std::array kAllowances{
     StressAllowance{"ltc", "tube", {1e-3, 1e-4, 8.0}, kSlender},
     StressAllowance{"ltc", "tube_thin", {0.45, 0.1, 8.0}, kThin},
     StressAllowance{"ltc", "tube_crossing", {1e-3, 1.5e-4, 8.0}, kSlender},
-    StressAllowance{"ltc", "on_edge", {1e-3, 2e-5, 1e3}, kCorner},
-    StressAllowance{"ltc", "on_corner", {1e-3, 2e-5, 1e4}, kCorner},
+    StressAllowance{"ltc", "on_edge", {1e-3, 2e-5, 3e5}, kCorner},
+    StressAllowance{"ltc", "on_corner", {1e-3, 2e-5, 1e5}, kCorner},
     StressAllowance{"ltc", "corners", {1e-3, 2e-5, kUnbounded}, kCorner},
-    StressAllowance{"hill", "thin", {0.15, 0.06, 8.0}, kThin},
+    StressAllowance{"hill", "thin", {0.8, 0.15, 8.0}, kThin},
     StressAllowance{"hill", "on_edge", {1e-3, 2e-5, 1e4}, kCorner},
     StressAllowance{"hill", "on_corner", {1e-3, 2e-5, 1e4}, kCorner},
     StressAllowance{"hill", "corners", {1e-3, 2e-5, kUnbounded}, kCorner},
@@ -88,9 +88,11 @@ const std::array kAllowances{
     StressAllowance{"mayaux", "huge", {2e-3, 1e-4, 8.0}, kSolidAngle},
     StressAllowance{"drobot", "contact", {2e-3, 3e-4, 8.0}, kSolidAngle},
     StressAllowance{"drobot", "huge", {2e-2, 5e-3, 8.0}, kSolidAngle},
+    StressAllowance{"drobot", "corners", {1e-3, 2e-5, 25.0}, kSolidAngle},
     StressAllowance{
         "oat", "far", {1.0, 0.5, 8.0}, "the excess of the triangle between two tiny caps that touch"},
     StressAllowance{"oat", "huge", {0.1, 2e-2, 8.0}, kSolidAngle},
+    StressAllowance{"oat", "thin", {1.2e-2, 5e-5, 50.0}, kSolidAngle},
     StressAllowance{
         "oat",
         "corners",
@@ -106,8 +108,10 @@ const std::array kAllowances{
     StressAllowance{
         "karis",
         "tube_crossing",
-        {3e-2, 2e-5, 8.0},
-        "within a tube prolonged the axis may lie on the mirrored ray: 1 ulp of an input explains the 7.5e-3 that were seen"},
+        {0.9, 2e-5, 8.0},
+        "within a tube prolonged the axis may lie on the mirrored ray: 1 ulp of an input explains the 0.28 that were seen"},
+    StressAllowance{"karis", "huge", {5e-3, 2e-5, 8.0}, kSolidAngle},
+    StressAllowance{"karis", "mirror", {1e-3, 2e-5, 50.0}, kSharp},
     StressAllowance{"monte_carlo", "*", {kUnbounded, kUnbounded, kUnbounded}, kSamples},
     StressAllowance{"reference", "touching", {3e-3, 2e-4, 8.0}, kPolar},
     StressAllowance{"reference", "on_plane", {1e-3, 2e-5, 100.0}, kCorner},
@@ -170,6 +174,7 @@ const std::array kApproximationAllowances{
     ApproximationAllowance{"light_field", "thin", 1.0, kPairs},
     ApproximationAllowance{"light_field", "roughness", 0.4, kSharp},
     ApproximationAllowance{"light_field", "mirror", 0.15, kSharp},
+    ApproximationAllowance{"light_field", "radiance", 0.03, kSharp},
     ApproximationAllowance{"light_field", "*", 5e-3, kSharp},
     ApproximationAllowance{"hill", "thin", 1.0, kPairs},
     ApproximationAllowance{"hill", "*", 0.02, "the fit of the clipped proxy sphere is within 6.2e-3 of the light"},
@@ -248,8 +253,8 @@ PointCase Perturbed(PointCase c, CaseRandom& random, int ulps) {
 
 class VariantRun {
  public:
-  VariantRun(Context& context, const ShaderLibrary& library, const Variant& variant)
-      : variant_(variant), ideal_(IdealVariant(variant)), shader_(context, library) {}
+  VariantRun(Context& context, const ShaderLibrary& library, const Variant& variant, Brdfs brdfs)
+      : variant_(variant), ideal_(IdealVariant(variant, brdfs)), brdfs_(brdfs), shader_(context, library) {}
 
   std::vector<Shaded> Float(std::span<const PointCase> cases, bool half_tables = false) {
     return Shade(variant_, cases, Precision::kFloat, half_tables);
@@ -258,6 +263,7 @@ class VariantRun {
     PointOptions options;
     options.as_lighting_pass = true;
     options.strict = true;
+    options.brdfs = brdfs_;
     return shader_.Shade(variant_, cases, options);
   }
   std::vector<Shaded> Double(std::span<const PointCase> cases) {
@@ -310,10 +316,12 @@ class VariantRun {
     options.precision = precision;
     options.as_lighting_pass = true;
     options.half_tables = half;
+    options.brdfs = brdfs_;
     return shader_.Shade(variant, cases, options);
   }
 
   Variant variant_, ideal_;
+  Brdfs brdfs_;
   PointShader shader_;
 };
 
@@ -560,12 +568,20 @@ PathResult FollowLobe(const std::string& technique, const StressPath& path, Ligh
   return result;
 }
 
+// Without lights.
+Scene SceneOf(Brdfs brdfs) {
+  Scene scene;
+  scene.brdf = brdfs.specular;
+  scene.diffuse = brdfs.diffuse;
+  return scene;
+}
+
 template <typename Family>
 std::vector<LightShape> ShapesOf(const Family& family, const Variant& variant, const StressOptions& options) {
   std::vector<LightShape> shapes;
   for (const LightShape shape : family.shapes) {
     if (options.shape && shape != *options.shape) continue;
-    Scene scene;
+    Scene scene = SceneOf(options.brdfs);
     scene.lights.resize(1);
     scene.lights[0].shape = shape;
     if (!WhyUnsupported(variant, scene)) shapes.push_back(shape);
@@ -656,7 +672,7 @@ StressResult Stress(Context& context, const ShaderLibrary& library, const Stress
     VariantStress row;
     row.name = variant.ShortName();
     row.judged = options.judged[v];
-    VariantRun run(context, library, variant);
+    VariantRun run(context, library, variant, options.brdfs);
     if (run.has_ideal()) row.ideal = run.ideal().Name();
     std::vector<std::pair<const StressFamily*, std::vector<LightShape>>> families;
     std::size_t pairs = 0;
@@ -687,13 +703,13 @@ StressResult Stress(Context& context, const ShaderLibrary& library, const Stress
 }
 
 std::vector<CaseValues> ShadeCase(Context& context, const ShaderLibrary& library,
-                                  const std::vector<Variant>& variants, const PointCase& c) {
+                                  const std::vector<Variant>& variants, const PointCase& c, Brdfs brdfs) {
   std::vector<CaseValues> rows;
-  Scene scene;
+  Scene scene = SceneOf(brdfs);
   scene.lights = {c.Light()};
   for (const Variant& variant : variants) {
     if (WhyUnsupported(variant, scene)) continue;
-    VariantRun run(context, library, variant);
+    VariantRun run(context, library, variant, brdfs);
     const std::vector<PointCase> cases{c};
     const std::vector<Shaded> in_double = run.Double(cases);
     CaseValues row{variant.ShortName(), run.Float(cases)[0], in_double[0], run.Ideal(cases)[0]};

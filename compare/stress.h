@@ -119,6 +119,7 @@ struct StressOptions {
   std::int64_t cases = 240000;  // of a variant, over all families and shapes
   std::uint64_t seed = 1;
   std::optional<LightShape> shape;  // one alone
+  Brdfs brdfs = {};
   bool pictures = false;            // fill the patches where nothing fails too
   bool fp16 = false;                // fill what is of half floats' arithmetic: a program more
   std::function<void(const std::string&, double)> progress;
@@ -142,6 +143,6 @@ struct CaseValues {
   double rounding = 0.0, backward = 0.0;
 };
 std::vector<CaseValues> ShadeCase(Context& context, const ShaderLibrary& library,
-                                  const std::vector<Variant>& variants, const PointCase& c);
+                                  const std::vector<Variant>& variants, const PointCase& c, Brdfs brdfs = {});
 
 }  // namespace arealab

@@ -206,12 +206,15 @@ Variant PublishedVariant(const Technique& technique) {
   return variant;
 }
 
-Variant IdealVariant(const Variant& variant) {
+Variant IdealVariant(const Variant& variant, Brdfs brdfs) {
+  const auto goes_with = [](const Variant& changed, const char* kind, Brdf brdf) {
+    return std::ranges::all_of(NeedsOf(changed, kind), [&](const auto& need) { return need.second == Name(brdf); });
+  };
   Variant ideal = variant;
   for (const auto& [option, choice] : variant.technique->ideal) {
     Variant changed = ideal;
     changed.options[option] = choice;
-    if (!WhyInconsistent(changed)) ideal = std::move(changed);
+    if (!WhyInconsistent(changed) && goes_with(changed, "brdf", brdfs.specular) && goes_with(changed, "diffuse", brdfs.diffuse)) ideal = std::move(changed);
   }
   return ideal;
 }

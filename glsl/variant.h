@@ -33,9 +33,9 @@ struct Variant {
 Variant DefaultVariant(const Technique& technique);
 Variant PublishedVariant(const Technique& technique);
 
-// The variant with no shortcut of computation, where its technique has any: [ideal] of its header, as far as the choices go together.
-// Computed in double, it is the mathematics that the variant's own numbers stand for.
-Variant IdealVariant(const Variant& variant);
+// The variant with no shortcut of computation, where its technique has any: [ideal] of its header, as far as the choices go together
+// and with a scene's BRDFs. Computed in double, it is the mathematics that the variant's own numbers stand for.
+Variant IdealVariant(const Variant& variant, Brdfs brdfs = {});
 
 // The variant with every effect forced on that its technique takes; shapes are left to the scene where it does not do them,
 // apertures, textures and the sky always: without them there is nothing to look at.

@@ -33,6 +33,7 @@ TEST_F(Cli, BadUseIsOneLineAndStatusTwo) {
   ExpectRefused(Arealab("compare gloss --contxt egl"), "contxt");
   ExpectRefused(Arealab("compare gloss --tolerance nan"), "nan is not from 1e-08 to 0.1");
   ExpectRefused(Arealab("stress --seed -1"), "-1 is not from 0");
+  ExpectRefused(Arealab("stress --diffuse disney --technique oat"), "oat does not know the diffuse BRDF disney");
   ExpectRefused(Arealab("compare gloss --baseline " + WriteFile("none.json", "{")), "none.json:1: not JSON");  // before anything is drawn
   ExpectRefused(Arealab(""), "subcommand");
 }

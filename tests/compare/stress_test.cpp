@@ -115,7 +115,7 @@ class Stressed : public testing::Test {
   static void SetUpTestSuite() { context_ = CreateContext(ContextKind::kOsmesa); }
   static void TearDownTestSuite() { context_.reset(); }
 
-  static VariantStress Run(const std::string& name, std::optional<LightShape> shape, std::int64_t cases, bool fp16 = false) {
+  static VariantStress Run(const std::string& name, std::optional<LightShape> shape, std::int64_t cases, bool fp16 = false, Brdfs brdfs = {}) {
     static const ShaderLibrary library;
     static const std::vector<Technique> techniques = LoadTechniques(library);
     StressOptions options;
@@ -124,6 +124,7 @@ class Stressed : public testing::Test {
     options.shape = shape;
     options.cases = cases;
     options.fp16 = fp16;
+    options.brdfs = brdfs;
     return Stress(*context_, library, options).variants[0];
   }
 
@@ -165,6 +166,17 @@ TEST_F(Stressed, BrokenFormsFailWhereTheirSourcesSay) {
   const VariantStress published = Run("ltc+clip=switch+edge=rational", LightShape::kRectangle, 3000);
   EXPECT_GT(Of(published, "contact").approximation, 1e-3);
   EXPECT_THAT(Of(published, "contact").failures, testing::Not(testing::IsEmpty()));
+}
+
+// The published form's ideal is another one there. (240 000 cases of each technique: README.)
+TEST_F(Stressed, DisneysLobeIsAsSteady) {
+  const Brdfs disney(Brdf::kGgx, Brdf::kDisney);
+  const VariantStress ltc = Run("ltc", LightShape::kRectangle, 3000, false, disney);
+  for (const FamilyResult& family : ltc.families) EXPECT_THAT(family.failures, testing::IsEmpty()) << family.family->name;
+  for (const PathResult& path : ltc.paths) EXPECT_THAT(path.failures, testing::IsEmpty()) << path.path->name;
+  EXPECT_GT(Of(ltc, "ordinary").p999, 0.0);
+  EXPECT_THAT(Run("ltc@published", LightShape::kRectangle, 300, false, disney).ideal, testing::Not(testing::HasSubstr("norm=none")));
+  EXPECT_THAT(Run("oat", LightShape::kRectangle, 300, false, disney).families, testing::IsEmpty());
 }
 
 // Told, not judged: which cases half floats hold, and what they make of them.

@@ -241,6 +241,16 @@ TEST(Variant, UnsupportedBrdfsAreNamedInASentence) {
 }
 
 // A table of the diffuse BRDF is read where it is not Lambert's alone.
+// norm=none is fitted for ggx above lambert alone.
+TEST(Variant, IdealsGoWithTheBrdfs) {
+  const ShaderLibrary library;
+  const std::vector<Technique> techniques = LoadTechniques(library);
+  const Variant published = ParseVariant(techniques, "ltc@published");
+  EXPECT_EQ(IdealVariant(published).options.at("norm"), "none");
+  EXPECT_EQ(IdealVariant(published, {Brdf::kWard}).options.at("norm"), "middle");
+  EXPECT_EQ(IdealVariant(published, {Brdf::kGgx, Brdf::kDisney}).options.at("norm"), "middle");
+}
+
 TEST(Variant, TablesOfTheDiffuseBrdf) {
   std::vector<Technique> techniques = Techniques();
   techniques[0].tables = {{"lobe", "lobe_{brdf}.exr"}, {"matte", "matte_{diffuse}.exr"}};
