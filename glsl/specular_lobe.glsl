@@ -19,14 +19,17 @@ vec3 SpecularBrdf(Surface surface, vec3 to_view, vec3 to_light) {
   float n_dot_v = max(dot(surface.normal, to_view), 1e-6);
   float n_dot_l = max(dot(surface.normal, to_light), 1e-6);
   vec3 sum = to_view + to_light;
-  vec3 half_vector = sum * inversesqrt(max(dot(sum, sum), 1e-20));
+  float length2 = max(dot(sum, sum), 1e-20);
+  float inverse = inversesqrt(length2);
+  vec3 half_vector = sum * inverse;
+  float v_dot_h = min(0.5 * length2 * inverse, 1.0);  // |v + l|/2: at grazing directions v·h itself would have no digits
   vec3 c = cross(surface.normal, half_vector);
   float sin2 = min(dot(c, c), 1.0);
   float tan2 = sin2 / max(1.0 - sin2, 1e-12);
   float lobe = GgxDensityBetween(surface.normal, half_vector, surface.alpha) *
-               BrdfOverGgx(n_dot_v, n_dot_l, max(dot(to_view, half_vector), 0.0), tan2, surface.alpha);
+               BrdfOverGgx(n_dot_v, n_dot_l, v_dot_h, tan2, surface.alpha);
 #if EFFECT_FRESNEL
-  return (surface.f0 + (vec3(1.0) - surface.f0) * SchlickWeight(dot(to_view, half_vector))) * lobe;
+  return (surface.f0 + (vec3(1.0) - surface.f0) * SchlickWeight(v_dot_h)) * lobe;
 #else
   return surface.f0 * lobe;
 #endif
