@@ -256,7 +256,7 @@ std::string Question(std::string line) {
 class SceneReader {
  public:
   SceneReader(const fs::path& file, std::set<fs::path>& files)
-      : file_(file), folder_(file.has_parent_path() ? file.parent_path() : "."), files_(files) {}
+      : file_(file), folder_(FolderOf(file)), files_(files) {}
 
   Scene Read(const std::string& text) {
     scene_.name = file_.stem().string();
@@ -932,6 +932,8 @@ std::string ReadQuestion(const fs::path& file) {
   std::getline(stream, line);
   return Question(std::move(line));
 }
+
+fs::path FolderOf(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
 std::string ReadSceneText(const fs::path& file) {
   std::error_code error;

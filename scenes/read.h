@@ -13,4 +13,7 @@ namespace arealab {
 // also those that are not there.
 Scene ParseScene(const std::filesystem::path& file, const std::string& text, std::set<std::filesystem::path>& files);
 
+// Where a scene file's images and meshes are looked for: "." for one without a folder.
+std::filesystem::path FolderOf(const std::filesystem::path& file);
+
 }  // namespace arealab

@@ -25,13 +25,13 @@ std::string Clipping(const Light& light, const glm::dvec3& position, const glm::
   if (light.shape == LightShape::kRectangle) {
     int above = 0;
     for (const double corner : {x + y, x - y, -x + y, -x - y}) above += height + corner > 0.0;
-    return fmt::format("{} of 4 corners above", above);
+    return fmt::format("{} of 4 above", above);
   }
   if (light.shape == LightShape::kPolygon) {
     const auto above = std::ranges::count_if(light.corners, [&](const glm::dvec2& corner) {
       return height + corner.x * glm::dot(light.axis_x, normal) + corner.y * glm::dot(light.axis_y, normal) > 0.0;
     });
-    return fmt::format("{} of {} corners above", above, light.corners.size());
+    return fmt::format("{} of {} above", above, light.corners.size());
   }
   const double reach = light.shape == LightShape::kSphere ? light.half_size.x
                        : light.shape == LightShape::kTube ? std::abs(x) + light.half_size.y * glm::length(glm::cross(light.axis_x, normal))

@@ -523,7 +523,7 @@ void PixelTab(PanelContext& context, PanelRequests& requests) {
     Fact("Form factor", "", fmt::format("{:.5g}", pixel.form_factor), "The share of the cosine-weighted hemisphere that the lights fill, summed.");
     ImGui::EndTable();
   }
-  Heading(pixel.lights.size() == 1 ? "Light, form factor, horizon" : "Lights, form factor, horizon");
+  Heading(pixel.lights.size() == 1 ? "Light, form factor, corners over the horizon" : "Lights, form factor, corners over the horizon");
   PixelLights(context, requests);
   Heading(fmt::format("{}, luminance   {}", session.lobe == Lobe::kTotal ? "Total" : session.lobe == Lobe::kDiffuse ? "Diffuse" : "Specular",
                       RadianceUnit(session.scene)));

@@ -208,7 +208,7 @@ void Session::Restore() {
 std::set<fs::path> Session::Files() const {
   std::set<fs::path> all = files;
   all.insert(scene.file);
-  const fs::path folder = scene.file.has_parent_path() ? scene.file.parent_path() : fs::path(".");
+  const fs::path folder = FolderOf(scene.file);
   for (const Light& each : scene.lights) {
     if (each.texture) all.insert(folder / each.texture_path);
   }
@@ -222,7 +222,7 @@ std::string Session::ImagePath(const std::string& light_name, const fs::path& fi
     throw InputError(fmt::format("{}: the light '{}' is a {}; expected a rectangle to show an image", file.string(), shown->name, Name(shown->shape)));
   }
   std::error_code error;
-  const fs::path folder = scene.file.has_parent_path() ? scene.file.parent_path() : fs::path(".");
+  const fs::path folder = FolderOf(scene.file);
   const fs::path relative = fs::relative(file, folder, error);
   if (error || relative.empty() || *relative.begin() == "..") {
     throw InputError(fmt::format("{}: outside {}; expected an image in the scene's folder, where the scene file can name it", file.string(), folder.string()));

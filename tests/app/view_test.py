@@ -159,12 +159,12 @@ def arealab(*arguments, **extra):
 class Window:
     """A running `arealab view`, and the hands that use it."""
 
-    def __init__(self, name, *arguments, **extra):
+    def __init__(self, name, *arguments, size=WINDOW, **extra):
         self.log_file = FOLDER / f"{name}.log"
         self.shots = 0
         self.name = name
         with open(self.log_file, "w") as log:
-            self.process = subprocess.Popen([PROGRAM, "view", *map(str, arguments), "--size", "{}x{}".format(*WINDOW), "--context", "osmesa", "--json"],
+            self.process = subprocess.Popen([PROGRAM, "view", *map(str, arguments), "--size", "{}x{}".format(*size), "--context", "osmesa", "--json"],
                                             stdout=subprocess.PIPE, stderr=log, text=True, cwd=FOLDER, env=environment() | extra)
         until(self.title, "window")
 
@@ -272,8 +272,8 @@ class Drop:
 
 
 class ViewTest(unittest.TestCase):
-    def window(self, *arguments):
-        window = Window(self.id().rsplit(".", 1)[1], *arguments)
+    def window(self, *arguments, **options):
+        window = Window(self.id().rsplit(".", 1)[1], *arguments, **options)
         self.addCleanup(window.end)
         return window
 
@@ -334,6 +334,28 @@ class ViewTest(unittest.TestCase):
         self.assertFalse(line(rows, middle))
         figures = window.leave()
         self.assertGreater(figures["input_to_picture_ms"]["count"], 0)
+
+    def test_picture_of_the_readme(self):
+        """What a pixel has of every technique, beside the truth; kept as window.png, which is app/view/window.png."""
+        size = (1280, 720)
+        width = size[0] - COLUMN
+        window = self.window("gloss", "--technique", "ltc", "--technique", "truth", size=size)
+        before = window.settled()
+        window.do("mousemove", 300, 400, "keydown", "shift", "click", "1", "keyup", "shift")
+        window.rest()
+        window.do("mousemove", width + 245, 67, "click", "1", "mousemove", 100, 650)  # the tab of the pixel
+        shots = [b"", before]
+        while shots[-1] != shots[-2]:  # until the last technique's values are there
+            time.sleep(1.0)
+            shots.append(window.settled())
+        shot = shots[-1]
+        changed = lambda rows, columns: any(a[3 * columns[0]:3 * columns[1]] != b[3 * columns[0]:3 * columns[1]]
+                                            for a, b in zip(read_png(before)[2][slice(*rows)], read_png(shot)[2][slice(*rows)]))
+        self.assertTrue(changed((490, 510), (width + 10, size[0])))  # the last of the values
+        self.assertTrue(changed((460, 700), (width - 400, width - 20)))  # the lobe
+        self.assertFalse(changed((60, 280), (0, width)))  # the light
+        (FOLDER / "window.png").write_bytes(shot)
+        window.leave()
 
     def test_a_slow_frame_loses_nothing(self):
         file = self.scene()
