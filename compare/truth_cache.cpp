@@ -20,7 +20,7 @@ namespace arealab {
 namespace {
 
 // Changes whenever the integrator's results or the layout of the files change.
-constexpr std::uint64_t kTruthVersion = 7;
+constexpr std::uint64_t kTruthVersion = 8;
 constexpr std::uint64_t kShadowVersion = 5;  // of the visibility on top of it
 constexpr std::uint64_t kTexturedSkyVersion = 1;
 struct Header {

@@ -17,7 +17,11 @@ struct TruthLevel {
 constexpr int kTruthLevelCount = 9;
 const std::array<TruthLevel, kTruthLevelCount>& TruthLevels();
 
+// How a level's sum is made: in double as it is kept; in float, for GGX, as the check that the first kept level must agree with; with the
+// BRDF's text, where GGX otherwise has a form of its own.
+enum class TruthForm { kKept, kCheck, kText };
+
 // IntegrateLight with one level and no check; the error members stay 0.
-LightIntegrals IntegrateLightAtLevel(const ShadingPoint& point, const Light& light, int level);
+LightIntegrals IntegrateLightAtLevel(const ShadingPoint& point, const Light& light, int level, TruthForm form = TruthForm::kKept);
 
 }  // namespace arealab

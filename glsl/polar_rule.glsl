@@ -100,13 +100,12 @@ void RayMap(float y, OUT(float) p, OUT(float) derivative) {
   derivative = 8.0 * g2 * g2 * g2 * g * inv * inv_c4;
 }
 
-// The y where p(y) = x ≥ 0; exact for small x too.
+// The y where p(y) = x ≥ 0; exact for small x too: with s = 1/cosζ, x² = s⁸ − 1 and y² = (s − 1)/(s + 1).
 float RayMapInverse(float x) {
-  float c4 = inversesqrt(1.0 + x * x);  // cos⁴ζ
-  float c2 = sqrt(c4);
-  float c = sqrt(c2);
-  float sin2 = x * x * c4 * c4 / ((1.0 + c2) * (1.0 + c4));  // (1 − cos⁸) / ((1 + cos²)(1 + cos⁴)) = sin²ζ
-  return sqrt(sin2) / (1.0 + c);
+  float s4 = sqrt(1.0 + x * x);
+  float s2 = sqrt(s4);
+  float s = sqrt(s2);
+  return x / ((1.0 + s) * sqrt((1.0 + s2) * (1.0 + s4)));
 }
 
 // Cosine n·l of the light direction whose half vector has the slope s.
