@@ -5,15 +5,10 @@ set -eu
 sh "$(dirname "$0")/setup.sh" test
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
-server=""
-trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
+trap 'rm -rf "$work"' EXIT
 
-Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$work/display" 2>/dev/null &
-server=$!
-while [ ! -s "$work/display" ]; do sleep 0.1; done
-DISPLAY=:$(cat "$work/display") XDG_CONFIG_HOME="$work" XDG_STATE_HOME="$work" build/bin/arealab view shapes \
-  --technique drobot --technique reference --size 1280x720 --frames 3 --screenshot "$work/window.png"
-mv "$work/window.png" app/view/window.png
+python3 tests/app/view_test.py build/bin/arealab "$work/view" ViewTest.test_picture_of_the_readme
+mv "$work/view/window.png" app/view/window.png
 [ "${1:-}" != window ] || exit 0
 
 build/bin/arealab compare gloss mirror spheres scan sixteen --size 384x384 --out "$work/out"

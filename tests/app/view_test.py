@@ -336,7 +336,7 @@ class ViewTest(unittest.TestCase):
         self.assertGreater(figures["input_to_picture_ms"]["count"], 0)
 
     def test_picture_of_the_readme(self):
-        """What a pixel has of every technique, beside the truth; kept as window.png, which is app/view/window.png."""
+        """What a pixel has of every technique, beside the truth; kept as window.png for app/picture.sh."""
         size = (1280, 720)
         width = size[0] - COLUMN
         window = self.window("gloss", "--technique", "ltc", "--technique", "truth", size=size)
