@@ -23,6 +23,7 @@ struct CostArguments {
   std::vector<std::string> techniques;
   std::string scene;
   std::vector<std::string> effects{"rectangle", "diffuse", "specular", "fresnel"};
+  BrdfOptions brdfs;
   bool json = false;
   bool claims = false;
   bool update = false;
@@ -175,7 +176,14 @@ int RunCost(const CostArguments& arguments) {
   std::vector<Variant> variants;
   for (const std::string& name : arguments.techniques) variants.push_back(ParseVariant(techniques, name));
   if (variants.empty()) variants = DefaultVariants(techniques);
-  const Scene scene = arguments.scene.empty() ? SceneOfEffects(arguments.effects) : LoadScene(FindScene(arguments.scene));
+  Scene scene;
+  if (arguments.scene.empty()) {
+    scene = SceneOfEffects(arguments.effects);
+    scene.brdf = arguments.brdfs.Chosen().specular;
+    scene.diffuse = arguments.brdfs.Chosen().diffuse;
+  } else {
+    scene = LoadScene(FindScene(arguments.scene));
+  }
   const CostMeter meter(arguments.gpus, arguments.common.CacheFolder());
   std::vector<std::map<std::string, GpuCost>> costs;
   {
@@ -218,6 +226,7 @@ void AddCost(CLI::App& app, int& status) {
   command->add_option("--effects", arguments->effects, "compiled for these effects where no scene is given")
       ->capture_default_str()
       ->delimiter(',');
+  arguments->brdfs.Add(*command);
   command->add_flag("--json", arguments->json, "as JSON");
   command->add_flag("--claims", arguments->claims, "the sources' own counts and times beside ours");
   command->add_option("--baseline", arguments->baseline, "file of stored core cycles: exit with status 1 where there are more now")
