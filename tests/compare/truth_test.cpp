@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
+#include <iostream>
 #include <random>
 #include <set>
 #include <string>
@@ -212,28 +214,46 @@ TEST(Truth, LightsAddUp) {
   }
 }
 
-// The tolerance is exceeded, against the finest level but one, in at most 1 of 1000 hard configurations.
+// The tolerance is exceeded, against the finest level but one, in at most 1 of 1000 hard configurations by GGX. Of a steep lobe it is in the
+// far tail, where there is nothing to see; Phong's converges slowest, and its stated error says so. AREALAB_HARD=20000: as many.
 TEST(Truth, StatedErrorsAreHonest) {
-  constexpr int kCount = 2000;
-  for (double tolerance : {1e-3, 1e-4}) {
-    std::mt19937_64 engine(17);
-    int lit = 0, exceeded = 0, understated = 0;
-    for (int i = 0; i < kCount; ++i) {
-      HardConfiguration c = MakeHardConfiguration(engine, i);
-      LightIntegrals truth = IntegrateLight(c.point, c.light, tolerance);
-      LightIntegrals fine = IntegrateLightAtLevel(c.point, c.light, kTruthLevelCount - 2);
-      EXPECT_TRUE(std::isfinite(truth.specular) && std::isfinite(truth.specular_grazing) &&
-                  std::isfinite(truth.form_factor));
-      if (fine.specular < 1e-12) continue;
-      ++lit;
-      exceeded += std::abs(truth.specular - fine.specular) > tolerance * fine.specular ||
-                  std::abs(truth.specular_grazing - fine.specular_grazing) >
-                      tolerance * (fine.specular_grazing + 0.04 * fine.specular);
-      understated += std::abs(truth.specular - fine.specular) > truth.specular_error;
+  struct Bound {
+    Brdf brdf;
+    int count;
+    double exceeded, understated;  // shares; measured: README, How true the truth is
+  };
+  const char* many = std::getenv("AREALAB_HARD");
+  for (const Bound& bound : {Bound{Brdf::kGgx, 2000, 0.001, 0.005}, Bound{Brdf::kGgxSeparable, 1000, 0.001, 0.005}, Bound{Brdf::kBeckmann, 1000, 0.01, 0.005},
+                             Bound{Brdf::kBlinnPhong, 1000, 0.015, 0.005}, Bound{Brdf::kWard, 1000, 0.01, 0.005}, Bound{Brdf::kPhong, 1000, 0.08, 0.015}}) {
+    const int count = many ? std::atoi(many) : bound.count;
+    for (double tolerance : {1e-3, 1e-4}) {
+      std::mt19937_64 engine(17);
+      int lit = 0, exceeded = 0, seen = 0, understated = 0;
+      for (int i = 0; i < count; ++i) {
+        HardConfiguration c = MakeHardConfiguration(engine, i);
+        c.point.brdf = bound.brdf;
+        LightIntegrals truth = IntegrateLight(c.point, c.light, tolerance);
+        LightIntegrals fine = IntegrateLightAtLevel(c.point, c.light, kTruthLevelCount - 2);
+        EXPECT_TRUE(std::isfinite(truth.specular) && std::isfinite(truth.specular_grazing) &&
+                    std::isfinite(truth.form_factor));
+        if (fine.specular < 1e-12) continue;
+        ++lit;
+        const bool is_exceeded = std::abs(truth.specular - fine.specular) > tolerance * fine.specular ||
+                                 std::abs(truth.specular_grazing - fine.specular_grazing) >
+                                     tolerance * (fine.specular_grazing + 0.04 * fine.specular);
+        exceeded += is_exceeded;
+        seen += is_exceeded && fine.specular > 1e-6;
+        understated += std::abs(truth.specular - fine.specular) > truth.specular_error;
+      }
+      const auto share = [&](int part) { return static_cast<double>(part) / lit; };
+      if (many) {
+        std::cout << Name(bound.brdf) << " " << tolerance << ": of " << lit << " lit " << 100.0 * share(exceeded) << " % exceed, " << 100.0 * share(seen)
+                  << " % above 1e-6; " << 100.0 * share(understated) << " % by more than stated\n";
+      }
+      EXPECT_GT(lit, count / 2);
+      EXPECT_LE(share(exceeded), bound.exceeded + 0.5 / lit) << Name(bound.brdf) << " " << tolerance;
+      EXPECT_LE(share(understated), bound.understated) << Name(bound.brdf) << " " << tolerance;
     }
-    EXPECT_GT(lit, kCount * 9 / 10);
-    EXPECT_LE(exceeded, kCount / 1000) << tolerance;
-    EXPECT_LE(understated, kCount / 200) << tolerance;
   }
 }
 
