@@ -64,6 +64,14 @@ void Confine(PairUnknowns& p) {
   p[8] = std::clamp(p[8], 0.0, 0.5);
 }
 
+// Of any number of unknowns, so that the decomposition is compiled once.
+constexpr int kMostUnknowns = 9;
+using AnyVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostUnknowns, 1>;
+using AnyMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostUnknowns, kMostUnknowns>;
+AnyVector Solve(const AnyMatrix& matrix, const AnyVector& right) {
+  return matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+}
+
 // Levenberg–Marquardt on the active unknowns: damping × 0.1 after an accepted step, × 10 after a refused one
 // [Marquardt 1963]. Ends when a step gains less than `gain` of the loss.
 template <typename Function, int kCount>
@@ -72,8 +80,8 @@ double Minimise(const Function& expand, Vector<kCount>* p, const std::array<bool
   double damping = 1e-3;
   ExpansionOf<kCount> here = expand(*p);
   for (int step = 0; step < most_steps; ++step) {
-    Eigen::Matrix<double, kCount, kCount> matrix = here.hessian.template selfadjointView<Eigen::Lower>();
-    Vector<kCount> right = -here.gradient;
+    AnyMatrix matrix = here.hessian;  // its lower triangle
+    AnyVector right = -here.gradient;
     for (int i = 0; i < kCount; ++i) {
       if (active[static_cast<std::size_t>(i)]) {
         matrix(i, i) *= 1.0 + damping;
@@ -84,7 +92,7 @@ double Minimise(const Function& expand, Vector<kCount>* p, const std::array<bool
         right[i] = 0.0;
       }
     }
-    Vector<kCount> trial = *p + matrix.ldlt().solve(right);
+    Vector<kCount> trial = *p + Solve(matrix, right);
     Confine(trial);
     if (!Admissible(trial)) {
       damping *= 10.0;
