@@ -31,7 +31,7 @@ constexpr double kLeastScale = 2e-31;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A family that is not here meets the general bounds. Each stands about three times above what 2 000 000 cases
-// showed, 400 000 of each of the seeds 1 to 5: tails are heavy, and other seeds may show more.
+// showed, 400 000 of each of the seeds 1 to 5, and 2 000 000 of seed 1: tails are heavy, and other seeds may show more.
 const char* const kThin =
     "the terms of the two long sides differ by width over distance of themselves, and float has 6e-8 of "
     "each: 5e-2 measured at 1 : 1e5";
@@ -78,7 +78,7 @@ const std::array kAllowances{
     StressAllowance{"light_field", "corners", {1e-3, 2e-5, kUnbounded}, kSharp},
     StressAllowance{"light_field", "roughness", {5e-2, 2e-5, kUnbounded}, kSharp},
     StressAllowance{"light_field", "mirror", {1e-3, 2e-5, 400.0}, kSharp},
-    StressAllowance{"light_field", "edge_on", {1e-3, 2e-5, 150.0}, kSharp},
+    StressAllowance{"light_field", "edge_on", {1e-3, 2e-5, 1e4}, kSharp},
     StressAllowance{"mayaux", "thin", {0.15, 0.06, 8.0}, kThin},
     StressAllowance{
         "mayaux",
@@ -90,8 +90,8 @@ const std::array kAllowances{
     StressAllowance{"drobot", "huge", {2e-2, 5e-3, 8.0}, kSolidAngle},
     StressAllowance{"drobot", "corners", {1e-3, 2e-5, 25.0}, kSolidAngle},
     StressAllowance{
-        "oat", "far", {1.0, 0.5, 8.0}, "the excess of the triangle between two tiny caps that touch"},
-    StressAllowance{"oat", "huge", {0.1, 2e-2, 8.0}, kSolidAngle},
+        "oat", "far", {4.0, 0.5, 8.0}, "the excess of the triangle between two tiny caps that touch"},
+    StressAllowance{"oat", "huge", {0.5, 2e-2, 8.0}, kSolidAngle},
     StressAllowance{"oat", "thin", {1.2e-2, 5e-5, 50.0}, kSolidAngle},
     StressAllowance{
         "oat",
@@ -112,6 +112,7 @@ const std::array kAllowances{
         "within a tube prolonged the axis may lie on the mirrored ray: 1 ulp of an input explains the 0.28 that were seen"},
     StressAllowance{"karis", "huge", {5e-3, 2e-5, 8.0}, kSolidAngle},
     StressAllowance{"karis", "mirror", {1e-3, 2e-5, 50.0}, kSharp},
+    StressAllowance{"karis", "inside_sphere", {1e-3, 2e-5, 100.0}, kSharp},
     StressAllowance{"monte_carlo", "*", {kUnbounded, kUnbounded, kUnbounded}, kSamples},
     StressAllowance{"reference", "touching", {3e-3, 2e-4, 8.0}, kPolar},
     StressAllowance{"reference", "on_plane", {1e-3, 2e-5, 100.0}, kCorner},
