@@ -38,6 +38,7 @@ struct BrdfOptions {
 
   void Add(CLI::App& command);
   Brdfs Chosen() const;
+  Scene On(Scene scene) const;  // the scene with these
 };
 
 // CLI::Range lets NaN pass.

@@ -36,6 +36,12 @@ Brdfs BrdfOptions::Chosen() const {
   return {named(kBrdfs, specular), named(kDiffuseBrdfs, diffuse)};
 }
 
+Scene BrdfOptions::On(Scene scene) const {
+  scene.brdf = Chosen().specular;
+  scene.diffuse = Chosen().diffuse;
+  return scene;
+}
+
 void CommonOptions::AddGlsl(CLI::App& command) {
   command.add_option("--glsl", glsl, "folder whose shader files win over the built-in ones (techniques/NAME.glsl, …)");
 }

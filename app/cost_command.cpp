@@ -176,14 +176,7 @@ int RunCost(const CostArguments& arguments) {
   std::vector<Variant> variants;
   for (const std::string& name : arguments.techniques) variants.push_back(ParseVariant(techniques, name));
   if (variants.empty()) variants = DefaultVariants(techniques);
-  Scene scene;
-  if (arguments.scene.empty()) {
-    scene = SceneOfEffects(arguments.effects);
-    scene.brdf = arguments.brdfs.Chosen().specular;
-    scene.diffuse = arguments.brdfs.Chosen().diffuse;
-  } else {
-    scene = LoadScene(FindScene(arguments.scene));
-  }
+  const Scene scene = arguments.scene.empty() ? arguments.brdfs.On(SceneOfEffects(arguments.effects)) : LoadScene(FindScene(arguments.scene));
   const CostMeter meter(arguments.gpus, arguments.common.CacheFolder());
   std::vector<std::map<std::string, GpuCost>> costs;
   {

@@ -212,9 +212,7 @@ int RunStress(const StressArguments& arguments) {
   for (const std::string& name : arguments.techniques)
     options.variants.push_back(ParseVariant(techniques, name));
   if (options.variants.empty()) options.variants = DefaultVariants(techniques);
-  Scene surfaces;
-  surfaces.brdf = options.brdfs.specular;
-  surfaces.diffuse = options.brdfs.diffuse;
+  const Scene surfaces = arguments.brdfs.On({});
   std::erase_if(options.variants, [&](const Variant& variant) {
     const auto why = WhyUnsupported(variant, surfaces);
     if (why && !arguments.techniques.empty()) throw InputError(fmt::format("stress: {}; expected a technique that knows both BRDFs", *why));
